@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files. Formats go by extension; errors name file, line and token. Writers write a temporary file and rename it.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "wellmesh/plc.hpp"
+#include "wellmesh/tet_mesh.hpp"
+
+namespace wellmesh {
+
+/// Reads .off .stl .obj .ply .poly .smesh (a .node beside them as they ask), or the surface of a .mesh.
+/// @throws MeshError  cannot_read, bad_input (file, line, token).
+[[nodiscard]] Plc read_plc(const std::filesystem::path& path);
+
+/// Reads points only: .node .xyz .ply.
+[[nodiscard]] std::vector<Vec3> read_points(const std::filesystem::path& path);
+
+/// Reads a tetrahedral mesh: MEDIT .mesh (ASCII), .node/.ele.
+[[nodiscard]] TetMesh read_mesh(const std::filesystem::path& path);
+
+/// Which flavour of a format to write where there are several.
+struct WriteOptions {
+    int msh_version = 41;  ///< 41 or 22
+};
+
+/// Writes .mesh .vtu .msh, or .node/.ele/.face/.edge (named after the .node or .ele path).
+/// @return the files written. @throws MeshError  cannot_write; then no file is left half written.
+std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::filesystem::path& path, const WriteOptions& options = {});
+
+/// Writes a PLC as .poly, e.g. for examples and for other tools.
+void write_plc(const Plc& plc, const std::filesystem::path& path);
+
+}  // namespace wellmesh

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exact geometric predicates on stored doubles.
+#pragma once
+
+#include <cstdint>
+
+#include "wellmesh/vec3.hpp"
+
+namespace wellmesh {
+
+enum class Sign : std::int8_t { negative = -1, zero = 0, positive = 1 };
+[[nodiscard]] constexpr Sign operator-(Sign s) { return static_cast<Sign>(-static_cast<int>(s)); }
+
+/// Sign of det(b - a, c - a, d - a): positive iff d lies on the side of plane abc from which a, b, c turn counter-clockwise
+/// when seen from the *other* side, i.e. (a, b, c, d) is a positive tetrahedron. Zero iff the four points are coplanar.
+[[nodiscard]] Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// Positive iff e lies strictly inside the circumsphere of the positive tetrahedron (a, b, c, d); zero iff on it.
+[[nodiscard]] Sign insphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+
+/// Positive iff p lies strictly inside the diametral sphere of segment ab.
+[[nodiscard]] Sign side_of_diametral_sphere(const Vec3& a, const Vec3& b, const Vec3& p);
+
+/// Positive iff p lies strictly inside the equatorial sphere of triangle abc (smallest sphere through its corners' circumcircle).
+/// @pre a, b, c are not collinear.
+[[nodiscard]] Sign side_of_equatorial_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
+
+}  // namespace wellmesh

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "wellmesh/certificate.hpp"
+#include "wellmesh/error.hpp"
+#include "wellmesh/tet_mesh.hpp"
+
+namespace wellmesh {
+
+enum class Termination { goals_met, goals_unmet, vertex_budget_reached, time_budget_reached, cancelled };
+[[nodiscard]] const char* to_string(Termination termination) noexcept;
+
+/// A goal, what was asked, what the mesh has.
+struct AskedAchieved {
+    std::string goal;  ///< e.g. "min dihedral angle [deg]"
+    double asked = 0, achieved = 0;
+    bool met = true;
+    std::uint64_t elements_missed = 0;
+    std::vector<ElementRef> worst{};  ///< a few elements that missed it
+};
+
+struct StageTime {
+    Stage stage = Stage::read;
+    double seconds = 0;
+    std::uint64_t vertices_after = 0, tets_after = 0;
+};
+
+struct MeshStatistics {
+    std::vector<StageTime> stages;
+    std::uint64_t input_vertices = 0, segment_vertices = 0, facet_vertices = 0, interior_vertices = 0;
+    std::uint64_t moved_vertices = 0, removed_vertices = 0;
+    std::uint64_t guarded_insertions = 0;     ///< refused: would have made an edge below the bound of Theorem 4.2
+    std::uint64_t exact_predicate_calls = 0;  ///< decided by expansion arithmetic
+    double coplanar_tolerance = 0;            ///< the largest local tolerance that was used, input units
+    std::vector<std::string> notes;           ///< what was merged, dropped or assumed, one sentence each
+};
+
+struct MeshResult {
+    TetMesh mesh;
+    Termination termination = Termination::goals_met;
+    Certificate certificate;
+    MeshStatistics statistics;
+    std::vector<AskedAchieved> goals;
+};
+
+}  // namespace wellmesh
