@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ranges of the options. NaN fails every comparison below, as it should.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "wellmesh/options.hpp"
+
+namespace wellmesh {
+
+namespace {
+
+// The regular tetrahedron is the extreme of both: R/L = sqrt(6)/4 and six equal dihedral angles of acos(1/3).
+constexpr double kLeastRadiusEdgeRatio = 0.612372435695794;
+constexpr double kLargestMinDihedralDeg = 70.528779365509308;
+constexpr double kLargest = std::numeric_limits<double>::max();  // excludes infinity
+
+}  // namespace
+
+std::vector<std::string> check(const MeshOptions& options) {
+    std::vector<std::string> problems;
+    const auto need = [&](bool good, const char* field, const char* range, double value) {
+        if (!good) problems.push_back(fmt::format("{} must be {}, not {}", field, range, value));
+    };
+    const auto positive = [](double x) { return x > 0 && x <= kLargest; };
+
+    const QualityGoals& quality = options.quality;
+    need(quality.max_radius_edge_ratio >= kLeastRadiusEdgeRatio && quality.max_radius_edge_ratio <= kLargest, "max radius-edge ratio",
+         "a finite number, at least 0.6124 (the regular tetrahedron's)", quality.max_radius_edge_ratio);
+    need(quality.min_dihedral_angle_deg >= 0 && quality.min_dihedral_angle_deg <= kLargestMinDihedralDeg, "min dihedral angle",
+         "between 0 and 70.52 degrees (the regular tetrahedron's)", quality.min_dihedral_angle_deg);
+
+    if (const auto h = options.size.edge_length) need(positive(*h), "size (edge length)", "a finite number above 0", *h);
+    if (const auto v = options.size.max_volume) need(positive(*v), "max volume", "a finite number above 0", *v);
+    if (const auto n = options.limits.max_vertices) need(*n >= 4, "max vertices", "at least 4", static_cast<double>(*n));
+    if (const auto t = options.limits.time) need(t->count() > 0, "time limit", "above 0 milliseconds", static_cast<double>(t->count()));
+    if (const auto d = options.coplanar_tolerance) need(*d >= 0 && *d <= kLargest, "coplanar tolerance", "a finite number, at least 0", *d);
+    return problems;
+}
+
+}  // namespace wellmesh
