@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shape measures of one tetrahedron, in rounded arithmetic: they rank elements, they decide no topology.
+//
+// Corners are a, b, c, d with det(b - a, c - a, d - a) > 0 (docs/conventions.md). All differences are taken between corners, so
+// a tetrahedron far from the origin loses no digits beyond those its coordinates lack.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/vec3_math.hpp"
+
+namespace wellmesh {
+
+/// Lengths in input units. An inverted tetrahedron has a negative volume and the other measures of its mirror image; a flat one has
+/// infinite radius_edge and aspect and sigma 0.
+struct TetShape {
+    double radius_edge = 0;  ///< circumradius / shortest edge; sqrt(6)/4 = 0.612 for the regular tetrahedron, its minimum
+    double aspect = 0;       ///< circumradius / inradius; 3 for the regular tetrahedron, its minimum
+    double sigma = 0;        ///< |volume| / shortest_edge^3; no bound on angles: a short edge makes it large
+    double volume = 0;       ///< signed
+    double min_dihedral_deg = 0, max_dihedral_deg = 0;
+    double shortest_edge = 0, circumradius = 0;
+};
+
+/// Six times the signed volume.
+inline double six_volumes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return determinant(b - a, c - a, d - a); }
+
+inline double shortest_edge_squared(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return std::min({squared_distance(a, b), squared_distance(a, c), squared_distance(a, d), squared_distance(b, c), squared_distance(b, d),
+                     squared_distance(c, d)});
+}
+
+/// Vector from a to the circumcentre times twelve volumes.
+inline Vec3 scaled_circumcentre(const Vec3& u, const Vec3& v, const Vec3& w) {
+    return squared_norm(u) * cross(v, w) + squared_norm(v) * cross(w, u) + squared_norm(w) * cross(u, v);
+}
+
+/// Square of circumradius / shortest edge; infinite for a flat tetrahedron. No square root: compare it with the bound's square.
+inline double radius_edge_squared(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const Vec3 u = b - a, v = c - a, w = d - a;
+    const double twelve_volumes = 2 * determinant(u, v, w);
+    const double radius_squared = squared_norm(scaled_circumcentre(u, v, w)) / (twelve_volumes * twelve_volumes);
+    return twelve_volumes == 0 ? std::numeric_limits<double>::infinity() : radius_squared / shortest_edge_squared(a, b, c, d);
+}
+
+/// Normals of the faces opposite a, b, c, d; they point inwards when the tetrahedron is positive, and are as long as twice the face's area.
+/// The fourth is computed from its own edges, not as minus the sum of the others, which would cancel on a needle.
+inline std::array<Vec3, 4> inward_face_normals(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const Vec3 u = b - a, v = c - a, w = d - a;
+    return {cross(d - b, c - b), cross(v, w), cross(w, u), cross(u, v)};
+}
+
+/// Returned by the cosine functions for a flat or inverted tetrahedron: worse than any angle.
+inline constexpr double kNoAngleCosine = 2;
+
+/// Cosine of the smallest dihedral angle (the largest of the six cosines); kNoAngleCosine if the tetrahedron is flat or inverted in
+/// rounded arithmetic or has a corner that is not finite. Larger is worse. For hot loops: four divisions, one square root, no
+/// trigonometry; 1 - cos resolves angles down to about 1e-6 degrees.
+/// Squares d |d| / (|n_i|^2 |n_j|^2) are compared instead of the cosines d / (|n_i| |n_j|); they are multiplied in an order that
+/// neither over- nor underflows while |n|^2 ~ L^4 does not (1e-76 < L < 1e76).
+inline double max_cos_dihedral(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
+    if (!(dot(b - a, n[1]) > 0)) return kNoAngleCosine;  // catches NaN as well
+    const double q0 = 1 / squared_norm(n[0]), q1 = 1 / squared_norm(n[1]), q2 = 1 / squared_norm(n[2]), q3 = 1 / squared_norm(n[3]);
+    if (!(q0 + q1 + q2 + q3 < std::numeric_limits<double>::infinity())) return kNoAngleCosine;
+    const auto signed_square = [](double negative_dot, double qi, double qj) { return (-negative_dot * qi) * (std::abs(negative_dot) * qj); };
+    const double s01 = signed_square(dot(n[0], n[1]), q0, q1), s02 = signed_square(dot(n[0], n[2]), q0, q2);
+    const double s03 = signed_square(dot(n[0], n[3]), q0, q3), s12 = signed_square(dot(n[1], n[2]), q1, q2);
+    const double s13 = signed_square(dot(n[1], n[3]), q1, q3), s23 = signed_square(dot(n[2], n[3]), q2, q3);
+    const double worst = std::max(std::max(std::max(s01, s02), std::max(s03, s12)), std::max(s13, s23));
+    // A tetrahedron has an angle of at most arccos(1/3), so `worst` is positive.
+    return std::sqrt(std::max(worst, 0.0));
+}
+
+/// Smallest dihedral angle in degrees; 0 for a flat or inverted tetrahedron.
+inline double min_dihedral_deg(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return std::acos(std::min(max_cos_dihedral(a, b, c, d), 1.0)) * (180 / std::numbers::pi);
+}
+
+/// The six dihedral angles in degrees, at the edges opposite to ab, ac, ad, bc, bd, cd in this order. By atan2 of the unit normals' cross and dot
+/// products: as accurate for angles near 0 and 180 as the normals are.
+inline std::array<double, 6> dihedral_angles_deg(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
+    for (Vec3& v : n) v = (1 / norm(v)) * v;
+    const auto angle = [](const Vec3& p, const Vec3& q) { return std::atan2(norm(cross(p, q)), -dot(p, q)) * (180 / std::numbers::pi); };
+    return {angle(n[0], n[1]), angle(n[0], n[2]), angle(n[0], n[3]), angle(n[1], n[2]), angle(n[1], n[3]), angle(n[2], n[3])};
+}
+
+/// All measures at once.
+inline TetShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const Vec3 u = b - a, v = c - a, w = d - a;
+    TetShape s;
+    s.volume = determinant(u, v, w) / 6;
+    s.shortest_edge = std::sqrt(shortest_edge_squared(a, b, c, d));
+    double twice_surface = 0;
+    for (const Vec3& n : inward_face_normals(a, b, c, d)) twice_surface += norm(n);
+    const std::array<double, 6> angles = dihedral_angles_deg(a, b, c, d);
+    s.min_dihedral_deg = *std::min_element(angles.begin(), angles.end());
+    s.max_dihedral_deg = *std::max_element(angles.begin(), angles.end());
+    const double volume = std::abs(s.volume);
+    if (volume == 0) {
+        s.circumradius = s.radius_edge = s.aspect = std::numeric_limits<double>::infinity();
+        return s;
+    }
+    s.circumradius = norm(scaled_circumcentre(u, v, w)) / (12 * volume);
+    s.radius_edge = s.circumradius / s.shortest_edge;
+    s.aspect = s.circumradius * (twice_surface / 2) / (3 * volume);  // the inradius is 3 V / surface
+    s.sigma = volume / (s.shortest_edge * s.shortest_edge * s.shortest_edge);
+    return s;
+}
+
+}  // namespace wellmesh
