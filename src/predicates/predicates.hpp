@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Predicates as the library's own loops call them: with a static filter for one bounding box, and with ties broken.
+// Exact for coordinates within exact_range.hpp. Stateless, thread-safe, independent of the order of earlier calls.
+//
+// Symbolic perturbation [DevillersTeillaud03]. Point p_i is lifted to (p_i, |p_i|^2 + eps_i), eps_i > 0, where the
+// lexicographically larger of two points has the infinitely larger eps. A triangulation that is Delaunay in this sense is
+// the lower hull of the lifted points, which is unique: it depends on the set of points only, not on their numbers, and all
+// its tetrahedra are free of ties. See perturbation in insphere.cpp for the signs.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "predicates/fp_environment.hpp"
+#include "wellmesh/predicates.hpp"
+
+namespace wellmesh {
+
+/// insphere with ties broken. Like insphere it changes sign under odd permutations of a, b, c, d and is unchanged under even ones.
+/// Never zero when the five points are distinct (0.0 and -0.0 do not differ) and a, b, c, d are not coplanar.
+[[nodiscard]] Sign insphere_perturbed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+
+/// How often this thread has gone as far as expansion arithmetic so far. Take differences: nothing ever resets it.
+[[nodiscard]] std::uint64_t exact_predicate_calls() noexcept;
+
+/// Static filter: error bounds for all points of one bounding box. Decides most calls by one comparison; the others go
+/// down the ladder, so that every answer is the exact one.
+class PredicateFilter {
+public:
+    PredicateFilter() = default;  ///< bounds that never decide
+    /// @param box_extent  upper minus lower corner, computed as such (rounding is monotonous, so no rounded difference of
+    ///                    coordinates exceeds it), of a box that holds all points that will ever be passed.
+    explicit PredicateFilter(const Vec3& box_extent);
+
+    [[nodiscard]] Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+        const double value = orient3d_value(a, b, c, d);
+        if (value > orient3d_bound_) [[likely]]
+            return Sign::positive;
+        if (value < -orient3d_bound_) return Sign::negative;
+        return orient3d_beyond_filter(a, b, c, d);
+    }
+    [[nodiscard]] Sign insphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) const {
+        const double value = insphere_value(a, b, c, d, e);
+        if (value > insphere_bound_) return Sign::positive;
+        if (value < -insphere_bound_) [[likely]]
+            return Sign::negative;
+        return insphere_beyond_filter(a, b, c, d, e);
+    }
+    [[nodiscard]] Sign insphere_perturbed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) const {
+        const double value = insphere_value(a, b, c, d, e);
+        if (value > insphere_bound_) return Sign::positive;
+        if (value < -insphere_bound_) [[likely]]
+            return Sign::negative;
+        return insphere_perturbed_beyond_filter(a, b, c, d, e);
+    }
+    [[nodiscard]] Sign side_of_diametral_sphere(const Vec3& a, const Vec3& b, const Vec3& p) const {
+        return wellmesh::side_of_diametral_sphere(a, b, p);
+    }
+    [[nodiscard]] Sign side_of_equatorial_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) const {
+        return wellmesh::side_of_equatorial_sphere(a, b, c, p);
+    }
+
+    [[nodiscard]] double orient3d_bound() const { return orient3d_bound_; }  ///< for tests
+    [[nodiscard]] double insphere_bound() const { return insphere_bound_; }  ///< for tests
+
+    /// The rounded determinants that the bounds are for.
+    [[nodiscard]] static double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+    [[nodiscard]] static double insphere_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+
+private:
+    static Sign orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+    static Sign insphere_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+    static Sign insphere_perturbed_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+
+    double orient3d_bound_ = std::numeric_limits<double>::infinity();
+    double insphere_bound_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace wellmesh
+
+#include "predicates/predicate_filter_inline.hpp"

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rungs of the predicates' ladder, for tests and benchmarks only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "predicates/predicates.hpp"
+
+namespace wellmesh {
+
+/// Which step decided, from the cheapest.
+enum class Rung : std::uint8_t {
+    static_filter,      ///< determinant against the bound of the bounding box
+    forward_bound,      ///< determinant against the bound from this call's magnitudes
+    exact_differences,  ///< expansion of the differences, which were all representable
+    first_order,        ///< expansion of the rounded differences plus the first-order effect of their errors, against a bound
+    exact,              ///< expansion of the unrounded differences
+    perturbation        ///< the exact value is zero: symbolic perturbation
+};
+
+struct Decision {
+    Sign sign = Sign::zero;
+    Rung rung = Rung::exact;
+};
+
+/// All rungs below the static filter, in order.
+[[nodiscard]] Decision decide_orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+[[nodiscard]] Decision decide_insphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+[[nodiscard]] Decision decide_side_of_diametral_sphere(const Vec3& a, const Vec3& b, const Vec3& p);
+[[nodiscard]] Decision decide_side_of_equatorial_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
+
+/// One rung alone: forward_bound, exact_differences, first_order or exact. Empty: it cannot decide.
+[[nodiscard]] std::optional<Sign> orient3d_rung(Rung rung, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+[[nodiscard]] std::optional<Sign> insphere_rung(Rung rung, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+[[nodiscard]] std::optional<Sign> diametral_rung(Rung rung, const Vec3& a, const Vec3& b, const Vec3& p);
+[[nodiscard]] std::optional<Sign> equatorial_rung(Rung rung, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
+
+/// The static filter and everything below it, with the rung that decided.
+[[nodiscard]] Decision decide_orient3d(const PredicateFilter& filter, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+[[nodiscard]] Decision decide_insphere(const PredicateFilter& filter, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
+                                       const Vec3& e);
+[[nodiscard]] Decision decide_insphere_perturbed(const PredicateFilter& filter, const Vec3& a, const Vec3& b, const Vec3& c,
+                                                 const Vec3& d, const Vec3& e);
+
+}  // namespace wellmesh
