@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The conflict test and the search for the cavity of a point, without changing anything.
+#include <limits>
+
+#include "delaunay/triangulation.hpp"
+
+namespace wellmesh {
+
+void Triangulation::ensure_marks() {
+    if (mark_.size() < tets_.slots()) mark_.resize(tets_.slots() + tets_.slots() / 2 + 64, 0);
+}
+
+void Triangulation::next_epoch() {
+    ensure_marks();
+    if (epoch_ > std::numeric_limits<std::uint32_t>::max() - 4) {
+        std::fill(mark_.begin(), mark_.end(), 0U);
+        epoch_ = 0;
+    }
+    epoch_ += 2;
+}
+
+bool Triangulation::ghost_in_conflict(TetId t, const Vec3& p) const {
+    const auto& c = tets_.corners(t);
+    const Sign side = filter_.orient3d(point(c[0]), point(c[1]), point(c[2]), p);
+    if (side != Sign::zero) return side == Sign::positive;
+    // p lies in the hull plane: the circumsphere of the tetrahedron behind cuts the plane in the hull face's circumcircle.
+    return in_conflict(tets_.across(t, 3).tet(), p);
+}
+
+bool Triangulation::in_conflict(TetId t, const Vec3& p) const {
+    const auto& c = tets_.corners(t);
+    if (c[3] == kInfiniteVertex) return ghost_in_conflict(t, p);
+    return filter_.insphere_perturbed(point(c[0]), point(c[1]), point(c[2]), point(c[3]), p) == Sign::positive;
+}
+
+bool Triangulation::find_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity) {
+    cavity.point = p;
+    cavity.tets.clear();
+    cavity.boundary.clear();
+    cavity.duplicate = VertexId{};
+    const TetId seed = locate(p, near);
+    for (const VertexId v : tets_.corners(seed))
+        if (v != kInfiniteVertex && point(v) == p) {
+            cavity.duplicate = v;
+            return false;
+        }
+    next_epoch();
+    const std::uint32_t kept = epoch_, taken = epoch_ + 1;
+    mark_[seed.index()] = taken;
+    cavity.tets.push_back(seed);
+    for (std::size_t i = 0; i < cavity.tets.size(); ++i) {
+        const TetId t = cavity.tets[i];
+        for (unsigned f = 0; f < 4; ++f) {
+            const TetFace outside = tets_.across(t, f);
+            const TetId n = outside.tet();
+            std::uint32_t& mark = mark_[n.index()];
+            if (mark == taken) continue;
+            if (mark != kept) {
+                if (in_conflict(n, p)) {
+                    mark = taken;
+                    cavity.tets.push_back(n);
+                    continue;
+                }
+                mark = kept;
+            }
+            cavity.boundary.push_back({TetFace{t, f}, outside});
+        }
+    }
+    return true;
+}
+
+}  // namespace wellmesh

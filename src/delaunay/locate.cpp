@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Point location by visibility walk, and look-ups of edges and faces through stars.
+#include "core/check.hpp"
+#include "core/rng.hpp"
+#include "delaunay/triangulation.hpp"
+
+namespace wellmesh {
+
+TetId Triangulation::locate(const Vec3& p, TetId hint) const {
+    TetId t = hint;
+    if (!t.valid() || t.index() >= tets_.slots() || !tets_.is_live(t)) t = last_located_;
+    if (!t.valid() || t.index() >= tets_.slots() || !tets_.is_live(t)) {
+        for (std::size_t i = 0; i < tets_.slots(); ++i)
+            if (tets_.is_live(TetId{i})) {
+                t = TetId{i};
+                break;
+            }
+    }
+    if (tets_.is_ghost(t)) t = tets_.across(t, 3).tet();
+    // A visibility walk ends in a Delaunay triangulation whatever face is taken first [Devillers02]; the one it came through is skipped.
+    TetId from{};
+    unsigned start = 0;
+    for (std::size_t steps = 0;; ++steps) {
+        WELLMESH_CHECK(Stage::delaunay, steps <= tets_.slots() + 4);
+        const TetStore::Corners& c = tets_.corners(t);
+        TetId next{};
+        for (unsigned k = 0; k < 4; ++k) {
+            const unsigned f = (start + k) & 3U;
+            const TetId neighbour = tets_.across(t, f).tet();
+            if (neighbour == from) continue;
+            const auto& fc = kFaceCorners[f];
+            if (filter_.orient3d(point(c[fc[0]]), point(c[fc[1]]), point(c[fc[2]]), p) == Sign::negative) {
+                next = neighbour;
+                break;
+            }
+        }
+        if (!next.valid()) break;
+        from = t;
+        t = next;
+        start = static_cast<unsigned>(steps) & 3U;
+        if (tets_.is_ghost(t)) break;
+    }
+    return t;
+}
+
+void Triangulation::find_star(VertexId v, std::vector<TetId>& star) {
+    star.clear();
+    const TetId seed = vertex_tet_[v.index()];
+    next_epoch();
+    star.push_back(seed);
+    mark_[seed.index()] = epoch_;
+    for (std::size_t i = 0; i < star.size(); ++i) {
+        const TetId t = star[i];
+        const unsigned at = tets_.find_corner(t, v);
+        for (unsigned f = 0; f < 4; ++f) {
+            if (f == at) continue;
+            const TetId n = tets_.across(t, f).tet();
+            if (mark_[n.index()] == epoch_) continue;
+            mark_[n.index()] = epoch_;
+            star.push_back(n);
+        }
+    }
+}
+
+TetId Triangulation::find_edge(VertexId a, VertexId b) {
+    // Walk the star of a; stop at the first tetrahedron that has b too.
+    next_epoch();
+    std::vector<TetId>& stack = new_tets_;
+    stack.clear();
+    stack.push_back(vertex_tet_[a.index()]);
+    mark_[stack[0].index()] = epoch_;
+    for (std::size_t i = 0; i < stack.size(); ++i) {
+        const TetId t = stack[i];
+        if (tets_.find_corner(t, b) < 4) return t;
+        const unsigned at = tets_.find_corner(t, a);
+        for (unsigned f = 0; f < 4; ++f) {
+            if (f == at) continue;
+            const TetId n = tets_.across(t, f).tet();
+            if (mark_[n.index()] == epoch_) continue;
+            mark_[n.index()] = epoch_;
+            stack.push_back(n);
+        }
+    }
+    return {};
+}
+
+TetFace Triangulation::find_face(VertexId a, VertexId b, VertexId c) {
+    const TetId first = find_edge(a, b);
+    if (!first.valid()) return {};
+    TetId t = first;
+    // Turn about the edge ab: leave each tetrahedron through the face opposite to the corner that was kept last.
+    const auto& corners = tets_.corners(t);
+    unsigned other[2], n = 0;
+    for (unsigned i = 0; i < 4; ++i)
+        if (corners[i] != a && corners[i] != b) other[n++] = i;
+    VertexId ahead = corners[other[0]], behind = corners[other[1]];
+    do {
+        if (ahead == c) return TetFace{t, tets_.find_corner(t, behind)};
+        if (behind == c) return TetFace{t, tets_.find_corner(t, ahead)};
+        const TetFace next = tets_.across(t, tets_.find_corner(t, behind));
+        behind = ahead;
+        ahead = tets_.corner(next.tet(), next.face());
+        t = next.tet();
+    } while (t != first);
+    return {};
+}
+
+}  // namespace wellmesh

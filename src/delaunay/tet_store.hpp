@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tetrahedra of a triangulation of the sphere S^3 as arrays: geometry lives elsewhere (triangulation.hpp).
+//
+// Anatomy of a tetrahedron (docs/conventions.md): corners 0..3 with orient3d(c0, c1, c2, c3) positive; face f is the triangle
+// opposite corner f, listed by kFaceCorners[f] so that its three corners followed by corner f are positive too.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/ids.hpp"
+
+namespace wellmesh {
+
+/// The vertex at infinity; a tetrahedron that has it (always as corner 3) is a ghost: its face 3 lies on the convex hull.
+inline constexpr VertexId kInfiniteVertex{std::uint32_t{0xfffffffeU}};
+
+inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kFaceCorners{{{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
+/// Edge e joins these two corners; edge 5 - e is the one opposite.
+inline constexpr std::array<std::array<std::uint8_t, 2>, 6> kEdgeCorners{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+/// kEdgeOf[i][j]: the edge between corners i and j.
+inline constexpr std::array<std::array<std::uint8_t, 4>, 4> kEdgeOf{{{7, 0, 1, 2}, {0, 7, 3, 4}, {1, 3, 7, 5}, {2, 4, 5, 7}}};
+
+/// Face `face()` of tetrahedron `tet()`, packed into 32 bits: at most 2^30 tetrahedra.
+class TetFace {
+public:
+    constexpr TetFace() = default;
+    constexpr TetFace(TetId t, unsigned f) : packed_(4 * t.value() + f) {}
+    [[nodiscard]] constexpr TetId tet() const { return TetId{packed_ >> 2}; }
+    [[nodiscard]] constexpr unsigned face() const { return packed_ & 3U; }
+    [[nodiscard]] constexpr bool valid() const { return packed_ != kNone; }
+    friend constexpr bool operator==(TetFace, TetFace) = default;
+
+private:
+    static constexpr std::uint32_t kNone = 0xffffffffU;
+    std::uint32_t packed_ = kNone;
+};
+
+/// One array per attribute. Ids of deleted tetrahedra are reused last-freed first, so equal operation sequences give equal ids.
+/// Invariant (check_adjacency): opposite(opposite(tf)) == tf and both sides name the same three vertices.
+class TetStore {
+public:
+    using Corners = std::array<VertexId, 4>;
+
+    [[nodiscard]] std::size_t slots() const { return corner_.size(); }  ///< live and free
+    [[nodiscard]] std::size_t live() const { return corner_.size() - free_.size(); }
+    [[nodiscard]] const Corners& corners(TetId t) const { return corner_[t.index()]; }
+    [[nodiscard]] VertexId corner(TetId t, unsigned i) const { return corner_[t.index()][i]; }
+    [[nodiscard]] bool is_live(TetId t) const { return corner_[t.index()][0].valid(); }
+    [[nodiscard]] bool is_ghost(TetId t) const { return corner_[t.index()][3] == kInfiniteVertex; }
+    [[nodiscard]] bool is_finite(TetId t) const { return is_live(t) && !is_ghost(t); }
+    [[nodiscard]] TetFace across(TetFace tf) const { return opposite_[tf.tet().index()][tf.face()]; }
+    [[nodiscard]] TetFace across(TetId t, unsigned f) const { return opposite_[t.index()][f]; }
+    /// Slot of v in t; 4 if v is no corner of t.
+    [[nodiscard]] unsigned find_corner(TetId t, VertexId v) const {
+        const Corners& c = corner_[t.index()];
+        return c[0] == v ? 0U : c[1] == v ? 1U : c[2] == v ? 2U : c[3] == v ? 3U : 4U;
+    }
+    [[nodiscard]] std::array<VertexId, 3> face_corners(TetFace tf) const {
+        const Corners& c = corner_[tf.tet().index()];
+        const auto& f = kFaceCorners[tf.face()];
+        return {c[f[0]], c[f[1]], c[f[2]]};
+    }
+
+    /// @throws MeshError{mesh_too_large} beyond 2^30 tetrahedra.
+    TetId allocate();
+    void release(TetId t);
+    void set_corners(TetId t, const Corners& corners) { corner_[t.index()] = corners; }
+    void connect(TetFace a, TetFace b) {
+        opposite_[a.tet().index()][a.face()] = b;
+        opposite_[b.tet().index()][b.face()] = a;
+    }
+    void reserve(std::size_t tets);
+    void clear();
+
+private:
+    std::vector<Corners> corner_;
+    std::vector<std::array<TetFace, 4>> opposite_;
+    std::vector<TetId> free_;
+};
+
+}  // namespace wellmesh
