@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// wellmesh check: proves or refutes what a mesh, of any tool, should be.
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "exit_status.hpp"
+#include "flags.hpp"
+#include "json_report.hpp"
+#include "output_file.hpp"
+#include "render_report.hpp"
+#include "wellmesh/io.hpp"
+
+namespace wellmesh::cli {
+
+namespace {
+
+struct CheckCommand {
+    std::string mesh, plc, json;
+    bool quiet = false;
+    CertifyOptions options;
+};
+
+int run(const CheckCommand& arguments) {
+    require_valid(arguments.options);
+    if (!arguments.json.empty()) require_writable(arguments.json);
+    const TetMesh mesh = read_mesh(arguments.mesh);
+    std::optional<Plc> plc;
+    if (!arguments.plc.empty()) plc = read_plc(arguments.plc);
+    const Certificate certificate = certify(mesh, arguments.options, plc ? &*plc : nullptr);
+    const int status = certificate.proven() ? kGoalsMet : kGoalsUnmet;
+
+    if (!arguments.json.empty()) {
+        Json json = json_header("check", arguments.mesh);
+        json["plc"] = arguments.plc.empty() ? Json(nullptr) : Json(arguments.plc);
+        json["options"] = to_json(arguments.options);
+        json["exit_status"] = status;
+        json["vertices"] = mesh.vertices.size();
+        json["tets"] = mesh.tets.size();
+        json["certificate"] = to_json(certificate);
+        write_json(arguments.json, json);
+    }
+    if (!arguments.quiet)
+        print_report(render_claims(certificate) + '\n' + render_shape(certificate) + '\n' + render_regions(certificate), arguments.json);
+    return status;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& program, Command& selected) {
+    CLI::App& command = *program.add_subcommand("check", "prove or refute, by exact arithmetic, what a mesh should be");
+    auto arguments = std::make_shared<CheckCommand>();
+    command.add_option("MESH", arguments->mesh, "tetrahedral mesh of any tool: .mesh (ASCII), .node/.ele")->required()->type_name("");
+    command.add_option("--plc", arguments->plc, "the domain that the mesh claims to fill (default: claims about it are not checked)")->type_name("FILE");
+    add_certify_flags(command, arguments->options);
+    add_json_flag(command, arguments->json);
+    command.add_flag("--quiet", arguments->quiet, "no report; the exit status says it: 0 no claim refuted, 1 otherwise");
+    command.callback([&selected, arguments] { selected = [arguments](Interrupt&) { return run(*arguments); }; });
+}
+
+}  // namespace wellmesh::cli

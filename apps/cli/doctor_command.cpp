@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// wellmesh doctor: everything that is wrong with an input, and what it consists of.
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <memory>
+
+#include "commands.hpp"
+#include "exit_status.hpp"
+#include "flags.hpp"
+#include "json_report.hpp"
+#include "output_file.hpp"
+#include "render_report.hpp"
+#include "wellmesh/diagnosis.hpp"
+#include "wellmesh/io.hpp"
+
+namespace wellmesh::cli {
+
+namespace {
+
+struct DoctorCommand {
+    std::string input, json;
+    MeshOptions options;
+};
+
+int run(const DoctorCommand& arguments) {
+    require_valid(arguments.options);
+    if (!arguments.json.empty()) require_writable(arguments.json);
+    const Diagnosis diagnosis = diagnose(read_plc(arguments.input), arguments.options);
+    const int status = diagnosis.has_errors() ? kBadInput : kGoalsMet;
+    if (!arguments.json.empty()) {
+        Json json = json_header("doctor", arguments.input);
+        json["exit_status"] = status;
+        json.update(to_json(diagnosis));
+        write_json(arguments.json, json);
+    }
+    print_report(render_diagnosis(diagnosis), arguments.json);
+    return status;
+}
+
+}  // namespace
+
+void add_doctor_command(CLI::App& program, Command& selected) {
+    CLI::App& command = *program.add_subcommand("doctor", "list everything that is wrong with an input");
+    auto arguments = std::make_shared<DoctorCommand>();
+    command.add_option("INPUT", arguments->input, "domain: .poly .smesh .off .stl .obj .ply .mesh")->required()->type_name("");
+    add_coplanar_tolerance_flag(command, arguments->options);
+    add_json_flag(command, arguments->json);
+    command.callback([&selected, arguments] { selected = [arguments](Interrupt&) { return run(*arguments); }; });
+}
+
+}  // namespace wellmesh::cli

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flags.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <system_error>
+
+#include "output_file.hpp"
+#include "wellmesh/error.hpp"
+
+namespace wellmesh::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array<const char*, 5> kMeshExtensions = {".mesh", ".vtu", ".msh", ".node", ".ele"};
+
+[[noreturn]] void bad_options(const std::vector<std::string>& problems) {
+    throw MeshError(ErrorCode::bad_options, Stage::read, fmt::format("{}", fmt::join(problems, "\n")));
+}
+
+/// Seconds as people type them. The range keeps the product within 64 bits and refuses NaN.
+bool read_seconds(const std::string& text, std::optional<std::chrono::milliseconds>& time) {
+    constexpr double kLongest = 1e9;  // 31 years
+    double seconds = 0;
+    if (!CLI::detail::lexical_cast(text, seconds)) return false;
+    if (!(seconds > 0 && seconds <= kLongest)) throw CLI::ValidationError("--time-limit", "must be above 0 and at most 1e9 seconds");
+    time = std::chrono::milliseconds(std::max<std::int64_t>(1, std::llround(seconds * 1000)));
+    return true;
+}
+
+/// TetGen's family: one name stands for .node, .ele, .face and .edge, so that the first of these beside a .poly is its input.
+bool replaces_input(const fs::path& output, const fs::path& input) {
+    std::error_code ignored;
+    if (fs::equivalent(output, input, ignored)) return true;
+    const bool node_family = output.extension() == ".node" || output.extension() == ".ele";
+    if (!node_family) return false;
+    for (const char* extension : {".node", ".ele", ".face", ".edge"})
+        if (fs::equivalent(fs::path(output).replace_extension(extension), input, ignored)) return true;
+    const bool input_has_nodes = input.extension() == ".poly" || input.extension() == ".smesh" || input.extension() == ".ele";
+    return input_has_nodes && fs::equivalent(fs::path(output).replace_extension(".node"), fs::path(input).replace_extension(".node"), ignored);
+}
+
+fs::path file_written(const fs::path& output) {
+    std::error_code ignored;
+    fs::path name = fs::weakly_canonical(output, ignored);
+    return name.extension() == ".ele" ? name.replace_extension(".node") : name;
+}
+
+}  // namespace
+
+void add_coplanar_tolerance_flag(CLI::App& command, MeshOptions& options) {
+    command.add_option("--coplanar-tolerance", options.coplanar_tolerance,
+                       "merge and accept facets whose vertices leave their plane by at most this, in input units (default: from the rounding of the input)")
+        ->type_name("D");
+}
+
+void add_mesh_flags(CLI::App& command, MeshOptions& options) {
+    command.add_option("--size", options.size.edge_length, "target edge length, in input units (default: none)")->type_name("H");
+    command.add_option("--max-volume", options.size.max_volume, "bound on the volume of every tetrahedron (default: none)")->type_name("V");
+    command.add_option("--max-radius-edge", options.quality.max_radius_edge_ratio, "bound on circumradius / shortest edge of every tetrahedron")
+        ->type_name("RATIO")->capture_default_str();
+    command.add_option("--min-dihedral", options.quality.min_dihedral_angle_deg, "least dihedral angle, in degrees; 0 ignores slivers")
+        ->type_name("DEG")->capture_default_str();
+    add_coplanar_tolerance_flag(command, options);
+    command.add_option("--seed", options.seed, "seed of the pseudo-random choices; input, options and seed fix the output")
+        ->type_name("N")->capture_default_str();
+    command.add_option("--max-vertices", options.limits.max_vertices, "stop at this many vertices, input included (default: none)")->type_name("N");
+    command.add_option_function<std::string>(
+        "--time-limit",
+        [&options](const std::string& text) {
+            if (!read_seconds(text, options.limits.time)) throw CLI::ConversionError(text, "--time-limit");
+        },
+        "stop after this many seconds (default: none)")
+        ->type_name("SECONDS");
+}
+
+void add_write_flags(CLI::App& command, WriteOptions& options) {
+    command.add_option("--msh-version", options.msh_version, "flavour of .msh files: 41 or 22")->type_name("41|22")->capture_default_str();
+}
+
+void add_certify_flags(CLI::App& command, CertifyOptions& options) {
+    command.add_option("--max-radius-edge", options.max_radius_edge_ratio, "refute if circumradius / shortest edge exceeds this")->type_name("RATIO");
+    command.add_option("--min-dihedral", options.min_dihedral_angle_deg, "refute if a dihedral angle is below this, in degrees")->type_name("DEG");
+    command.add_option("--max-aspect", options.max_aspect_ratio, "refute if circumradius / inradius exceeds this (3 is regular)")->type_name("RATIO");
+    command.add_option("--min-sigma", options.min_sigma, "refute if volume / shortest edge^3 is below this")->type_name("SIGMA");
+    command.add_option("--max-volume", options.max_volume, "refute if the volume of a tetrahedron exceeds this")->type_name("V");
+    command.add_option("--tolerance", options.tolerance, "how far a subface may leave the input, relative to the input's diagonal")
+        ->type_name("REL")->capture_default_str();
+    command.add_option("--flat-angle", options.flat_angle_rad, "constraint triangles that bend less than this make no segment, in radians")
+        ->type_name("RAD")->capture_default_str();
+}
+
+void add_json_flag(CLI::App& command, std::string& path) {
+    command.add_option("--json", path, "write the report as JSON; - is standard output")->type_name("FILE");
+}
+
+void add_output_flag(CLI::App& command, std::vector<std::string>& paths, const std::string& what) {
+    command.add_option("-o,--output", paths, what)->type_name("FILE")->expected(1)->allow_extra_args(false)->multi_option_policy(
+        CLI::MultiOptionPolicy::TakeAll);
+}
+
+void require_valid(const MeshOptions& options) {
+    if (const std::vector<std::string> problems = check(options); !problems.empty()) bad_options(problems);
+}
+
+void require_valid(const WriteOptions& options) {
+    if (options.msh_version != 41 && options.msh_version != 22)
+        bad_options({fmt::format("--msh-version must be 41 or 22, not {}", options.msh_version)});
+}
+
+void require_valid(const CertifyOptions& options) {
+    std::vector<std::string> problems;
+    const auto need = [&](const char* flag, std::optional<double> value, double least, double most, const char* range) {
+        if (value && !(*value >= least && *value <= most)) problems.push_back(fmt::format("{} must be {}, not {}", flag, range, *value));
+    };
+    constexpr double kMost = std::numeric_limits<double>::max();
+    constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+    need("--max-radius-edge", options.max_radius_edge_ratio, kLeast, kMost, "a positive number");
+    need("--min-dihedral", options.min_dihedral_angle_deg, 0, 90, "between 0 and 90 degrees");
+    need("--max-aspect", options.max_aspect_ratio, kLeast, kMost, "a positive number");
+    need("--min-sigma", options.min_sigma, 0, kMost, "a number not below 0");
+    need("--max-volume", options.max_volume, kLeast, kMost, "a positive number");
+    need("--tolerance", options.tolerance, 0, 1, "between 0 and 1");
+    need("--flat-angle", options.flat_angle_rad, 0, std::numbers::pi, "between 0 and pi radians");
+    if (!problems.empty()) bad_options(problems);
+}
+
+void require_mesh_outputs(const std::vector<std::string>& outputs, const std::string& input) {
+    std::vector<std::string> problems;
+    std::vector<fs::path> seen;
+    for (const std::string& output : outputs) {
+        const std::string extension = fs::path(output).extension().string();
+        if (std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) == kMeshExtensions.end())
+            problems.push_back(fmt::format("{}: unknown mesh format '{}'; known are {}", output, extension, fmt::join(kMeshExtensions, " ")));
+        if (replaces_input(output, input)) problems.push_back(fmt::format("{}: writing it would replace the input {}", output, input));
+        if (std::find(seen.begin(), seen.end(), file_written(output)) != seen.end())
+            problems.push_back(fmt::format("{}: named twice", output));
+        seen.push_back(file_written(output));
+    }
+    if (!problems.empty()) bad_options(problems);
+    for (const std::string& output : outputs) require_writable(output);
+}
+
+}  // namespace wellmesh::cli

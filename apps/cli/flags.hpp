@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Flag <-> option field. No default of its own: what --help prints is read from the structs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "wellmesh/certificate.hpp"
+#include "wellmesh/io.hpp"
+#include "wellmesh/options.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace wellmesh::cli {
+
+void add_mesh_flags(CLI::App& command, MeshOptions& options);
+void add_coplanar_tolerance_flag(CLI::App& command, MeshOptions& options);
+void add_write_flags(CLI::App& command, WriteOptions& options);
+void add_certify_flags(CLI::App& command, CertifyOptions& options);
+void add_json_flag(CLI::App& command, std::string& path);
+void add_output_flag(CLI::App& command, std::vector<std::string>& paths, const std::string& what);
+
+/// @throws MeshError{bad_options} that lists every value out of its range.
+void require_valid(const MeshOptions& options);
+void require_valid(const CertifyOptions& options);
+void require_valid(const WriteOptions& options);
+
+/// @throws MeshError{bad_options} for an unknown extension, a file named twice, or one that would replace an input file;
+///         MeshError{cannot_write} for what can be known to fail.
+void require_mesh_outputs(const std::vector<std::string>& outputs, const std::string& input);
+
+}  // namespace wellmesh::cli

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "json_report.hpp"
+
+#include "output_file.hpp"
+#include "wellmesh/version.hpp"
+
+namespace wellmesh::cli {
+
+namespace {
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
+Json to_json(const Vec3& p) { return Json::array({p.x, p.y, p.z}); }
+
+Json to_json(const ElementRef& element) {
+    Json json = {{"kind", to_string(element.kind)}, {"number", element.number}};
+    json["point"] = element.where ? to_json(*element.where) : Json(nullptr);
+    return json;
+}
+
+Json to_json(const std::vector<ElementRef>& elements) {
+    Json json = Json::array();
+    for (const ElementRef& element : elements) json.push_back(to_json(element));
+    return json;
+}
+
+const char* key(Claim::State state) {
+    switch (state) {
+        case Claim::State::not_checked: return "not_checked";
+        case Claim::State::proven: return "proven";
+        case Claim::State::refuted: return "refuted";
+    }
+    return "?";
+}
+
+const char* key(Severity severity) {
+    switch (severity) {
+        case Severity::note: return "note";
+        case Severity::warning: return "warning";
+        case Severity::error: return "error";
+    }
+    return "?";
+}
+
+}  // namespace
+
+Json json_header(const std::string& command, const std::string& input) {
+    return {{"wellmesh", WELLMESH_VERSION}, {"command", command}, {"input", input}};
+}
+
+Json to_json(const MeshOptions& options) {
+    Json json;
+    json["max_radius_edge_ratio"] = options.quality.max_radius_edge_ratio;
+    json["min_dihedral_angle_deg"] = options.quality.min_dihedral_angle_deg;
+    json["edge_length"] = or_null(options.size.edge_length);
+    json["max_volume"] = or_null(options.size.max_volume);
+    json["max_vertices"] = or_null(options.limits.max_vertices);
+    json["time_limit_seconds"] = options.limits.time ? Json(static_cast<double>(options.limits.time->count()) / 1000) : Json(nullptr);
+    json["coplanar_tolerance"] = or_null(options.coplanar_tolerance);
+    json["seed"] = options.seed;
+    return json;
+}
+
+Json to_json(const CertifyOptions& options) {
+    Json json;
+    json["max_radius_edge_ratio"] = or_null(options.max_radius_edge_ratio);
+    json["min_dihedral_angle_deg"] = or_null(options.min_dihedral_angle_deg);
+    json["max_aspect_ratio"] = or_null(options.max_aspect_ratio);
+    json["min_sigma"] = or_null(options.min_sigma);
+    json["max_volume"] = or_null(options.max_volume);
+    json["tolerance"] = options.tolerance;
+    json["flat_angle_rad"] = options.flat_angle_rad;
+    return json;
+}
+
+Json to_json(const std::vector<AskedAchieved>& goals) {
+    Json json = Json::array();
+    for (const AskedAchieved& goal : goals)
+        json.push_back({{"goal", goal.goal}, {"asked", goal.asked}, {"achieved", goal.achieved}, {"met", goal.met},
+                        {"elements_missed", goal.elements_missed}, {"worst", to_json(goal.worst)}});
+    return json;
+}
+
+Json to_json(const ShapeStatistics& statistics) {
+    Json json;
+    json["tets"] = statistics.tets;
+    json["max_radius_edge_ratio"] = statistics.max_radius_edge_ratio;
+    json["max_aspect_ratio"] = statistics.max_aspect_ratio;
+    json["min_sigma"] = statistics.min_sigma;
+    json["min_dihedral_angle_deg"] = statistics.min_dihedral_angle_deg;
+    json["max_dihedral_angle_deg"] = statistics.max_dihedral_angle_deg;
+    json["min_dihedral_histogram"] = statistics.min_dihedral_histogram;
+    json["min_edge"] = statistics.min_edge;
+    json["mean_edge"] = statistics.mean_edge;
+    json["max_edge"] = statistics.max_edge;
+    json["min_volume"] = statistics.min_volume;
+    json["max_volume"] = statistics.max_volume;
+    return json;
+}
+
+Json to_json(const Certificate& certificate) {
+    Json claims = Json::array();
+    for (const Claim& claim : certificate.claims) {
+        Json json = {{"name", claim.name}, {"statement", claim.statement}, {"state", key(claim.state)},
+                     {"checked", claim.checked}, {"violations", claim.violations}};
+        json["witness"] = claim.witness ? to_json(*claim.witness) : Json(nullptr);
+        json["detail"] = claim.detail;
+        claims.push_back(std::move(json));
+    }
+    Json regions = Json::array();
+    for (const RegionVolume& region : certificate.regions)
+        regions.push_back({{"region", region.region}, {"tets", region.tets}, {"volume", region.volume}, {"plc_volume", or_null(region.plc_volume)}});
+    Json json = {{"proven", certificate.proven()}, {"claims", std::move(claims)}, {"regions", std::move(regions)}};
+    json["shape"] = {{"all", to_json(certificate.all)}, {"interior", to_json(certificate.interior)}, {"boundary", to_json(certificate.boundary)}};
+    return json;
+}
+
+Json to_json(const MeshStatistics& statistics) {
+    Json json;
+    json["input_vertices"] = statistics.input_vertices;
+    json["segment_vertices"] = statistics.segment_vertices;
+    json["facet_vertices"] = statistics.facet_vertices;
+    json["interior_vertices"] = statistics.interior_vertices;
+    json["moved_vertices"] = statistics.moved_vertices;
+    json["removed_vertices"] = statistics.removed_vertices;
+    json["guarded_insertions"] = statistics.guarded_insertions;
+    json["exact_predicate_calls"] = statistics.exact_predicate_calls;
+    json["coplanar_tolerance"] = statistics.coplanar_tolerance;
+    json["notes"] = statistics.notes;
+    return json;
+}
+
+Json to_json(const std::vector<StageTime>& stages) {
+    Json json = Json::array();
+    for (const StageTime& stage : stages)
+        json.push_back({{"stage", to_string(stage.stage)}, {"seconds", stage.seconds}, {"vertices_after", stage.vertices_after}, {"tets_after", stage.tets_after}});
+    return json;
+}
+
+Json to_json(const Diagnosis& diagnosis) {
+    Json defects = Json::array();
+    for (const Defect& defect : diagnosis.defects)
+        defects.push_back({{"severity", key(defect.severity)}, {"kind", to_string(defect.kind)}, {"message", defect.message},
+                           {"value", defect.value}, {"elements", to_json(defect.elements)}});
+    Json cells = Json::array();
+    for (const CellSummary& cell : diagnosis.cells)
+        cells.push_back({{"region", cell.region}, {"filled", cell.filled}, {"volume", cell.volume}, {"inside", to_json(cell.inside)}});
+    Json json;
+    json["has_errors"] = diagnosis.has_errors();
+    json["vertices"] = diagnosis.vertices;
+    json["segments"] = diagnosis.segments;
+    json["facets"] = diagnosis.facets;
+    json["coplanar_tolerance"] = diagnosis.coplanar_tolerance;
+    json["defects"] = std::move(defects);
+    json["cells"] = std::move(cells);
+    return json;
+}
+
+Json to_json(const MeshError& error) {
+    return {{"code", to_string(error.code())}, {"stage", to_string(error.stage())}, {"message", error.what()}, {"offenders", to_json(error.offenders())}};
+}
+
+void write_json(const std::string& path, const Json& report) {
+    // File names need not be UTF-8; JSON must be.
+    write_text(path, report.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+}  // namespace wellmesh::cli

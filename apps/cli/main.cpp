@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line program: parses, runs one command, turns every failure into a message and an exit status.
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <new>
+
+#include "commands.hpp"
+#include "exit_status.hpp"
+#include "output_file.hpp"
+#include "render_report.hpp"
+#include "usage.hpp"
+#include "wellmesh/error.hpp"
+#include "wellmesh/version.hpp"
+
+namespace wellmesh::cli {
+
+void print_report(const std::string& text, const std::string& json_path) {
+    if (json_path == kStandardOutput) fmt::print(stderr, "{}", text);
+    else write_stdout(text);
+}
+
+namespace {
+
+void print_error(const MeshError& error) {
+    constexpr std::size_t kShown = 20;
+    fmt::print(stderr, "wellmesh: {}: {}\n", to_string(error.code()), error.what());
+    const auto& offenders = error.offenders();
+    for (std::size_t i = 0; i < std::min(offenders.size(), kShown); ++i) fmt::print(stderr, "  {}\n", describe(offenders[i]));
+    if (offenders.size() > kShown) fmt::print(stderr, "  and {} more\n", offenders.size() - kShown);
+    if (error.code() == ErrorCode::bad_input && error.stage() == Stage::validate)
+        fmt::print(stderr, "'wellmesh doctor' lists every defect.\n");
+}
+
+int run_guarded(const Command& command) {
+    try {
+        Interrupt interrupt;
+        return command(interrupt);
+    } catch (const MeshError& error) {
+        print_error(error);
+        return exit_status(error.code());
+    } catch (const std::bad_alloc&) {
+        std::fputs("wellmesh: out of memory; nothing written\n", stderr);
+        return kGaveUp;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "wellmesh: internal error: {}; please report it with the input\n", error.what());
+        return kInternalError;
+    }
+}
+
+int run(int argc, char** argv) {
+    CLI::App program("wellmesh: certified Delaunay tetrahedral meshes without slivers", "wellmesh");
+    program.set_version_flag("--version", "wellmesh " WELLMESH_VERSION, "print the version and exit");
+    program.set_help_flag("-h,--help", "print this help and exit");
+    program.require_subcommand(1);
+    program.failure_message(CLI::FailureMessage::simple);
+    Command selected;
+    for (const auto add : {add_mesh_command, add_check_command, add_quality_command, add_doctor_command, add_delaunay_command, add_example_command})
+        add(program, selected);
+    program.footer(exit_status_footer());
+    for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) command->footer(exit_status_footer());
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return report_parse_error(program, error);
+    }
+    return run_guarded(selected);
+}
+
+}  // namespace
+
+}  // namespace wellmesh::cli
+
+int main(int argc, char** argv) {
+    try {
+        return wellmesh::cli::run(argc, argv);
+    } catch (const wellmesh::MeshError& error) {  // --help into a full disk
+        std::fprintf(stderr, "wellmesh: %s\n", error.what());
+        return wellmesh::cli::exit_status(error.code());
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "wellmesh: internal error: %s\n", error.what());
+        return wellmesh::cli::kInternalError;
+    }
+}

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "text_table.hpp"
+
+namespace wellmesh::cli {
+
+namespace {
+
+using Align = TextTable::Align;
+
+std::string number(double value) { return fmt::format("{:.6g}", value); }
+std::string count(std::uint64_t value) { return fmt::format("{}", value); }
+std::string point(const Vec3& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x, p.y, p.z); }
+
+}  // namespace
+
+std::string describe(const ElementRef& element) {
+    const std::string name = element.kind == EntityKind::file ? fmt::format("line {}", element.number)
+                                                              : fmt::format("{} {}", to_string(element.kind), element.number);
+    return element.where ? fmt::format("{} at {}", name, point(*element.where)) : name;
+}
+
+std::string describe(const std::vector<ElementRef>& elements, std::size_t at_most) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(elements.size(), at_most); ++i) text += (i > 0 ? "; " : "") + describe(elements[i]);
+    if (elements.size() > at_most) text += fmt::format("; and {} more", elements.size() - at_most);
+    return text;
+}
+
+const char* to_string(Claim::State state) noexcept {
+    switch (state) {
+        case Claim::State::not_checked: return "not checked";
+        case Claim::State::proven: return "proven";
+        case Claim::State::refuted: return "REFUTED";
+    }
+    return "?";
+}
+
+const char* to_string(Severity severity) noexcept {
+    switch (severity) {
+        case Severity::note: return "note";
+        case Severity::warning: return "warning";
+        case Severity::error: return "error";
+    }
+    return "?";
+}
+
+std::string render_goals(const std::vector<AskedAchieved>& goals) {
+    if (goals.empty()) return {};
+    TextTable table({{"goal"}, {"asked", Align::right}, {"achieved", Align::right}, {"met"}, {"missed by", Align::right}, {"worst"}});
+    for (const AskedAchieved& goal : goals)
+        table.add({goal.goal, number(goal.asked), number(goal.achieved), goal.met ? "yes" : "NO",
+                   goal.elements_missed > 0 ? count(goal.elements_missed) : "", describe(goal.worst, 1)});
+    return "Asked and achieved\n" + table.str();
+}
+
+std::string render_claims(const Certificate& certificate) {
+    if (certificate.claims.empty()) return {};
+    TextTable table({{"claim"}, {"state"}, {"violations", Align::right}, {"checked", Align::right}, {"statement"}});
+    std::string refutations;
+    for (const Claim& claim : certificate.claims) {
+        const bool checked = claim.state != Claim::State::not_checked;
+        table.add({claim.name, to_string(claim.state), checked ? count(claim.violations) : "", checked ? count(claim.checked) : "", claim.statement});
+        if (claim.state != Claim::State::refuted) continue;
+        refutations += fmt::format("  {}: {}{}{}\n", claim.name, claim.witness ? describe(*claim.witness) : "", 
+                                   claim.witness && !claim.detail.empty() ? ": " : "", claim.detail);
+    }
+    std::string text = "Certificate\n" + table.str();
+    if (!refutations.empty()) text += "First witnesses\n" + refutations;
+    return text;
+}
+
+std::string render_shape(const Certificate& certificate) {
+    TextTable table({{"shape"}, {"all", Align::right}, {"interior", Align::right}, {"boundary", Align::right}});
+    const std::array<const ShapeStatistics*, 3> sets = {&certificate.all, &certificate.interior, &certificate.boundary};
+    const auto row = [&](const char* title, auto&& value) {
+        std::vector<std::string> cells = {title};
+        for (const ShapeStatistics* set : sets) cells.push_back(set->tets > 0 ? value(*set) : "-");
+        table.add(std::move(cells));
+    };
+    using S = ShapeStatistics;
+    row("tetrahedra", [](const S& s) { return count(s.tets); });
+    row("min dihedral angle [deg]", [](const S& s) { return number(s.min_dihedral_angle_deg); });
+    row("max dihedral angle [deg]", [](const S& s) { return number(s.max_dihedral_angle_deg); });
+    row("max radius-edge ratio R/L", [](const S& s) { return number(s.max_radius_edge_ratio); });
+    row("max aspect ratio R/r", [](const S& s) { return number(s.max_aspect_ratio); });
+    row("min sigma V/L^3", [](const S& s) { return number(s.min_sigma); });
+    row("min edge", [](const S& s) { return number(s.min_edge); });
+    row("mean edge", [](const S& s) { return number(s.mean_edge); });
+    row("max edge", [](const S& s) { return number(s.max_edge); });
+    row("min volume", [](const S& s) { return number(s.min_volume); });
+    row("max volume", [](const S& s) { return number(s.max_volume); });
+    return "Shape\n" + table.str();
+}
+
+std::string render_histogram(const ShapeStatistics& statistics) {
+    const auto& bins = statistics.min_dihedral_histogram;
+    const std::uint64_t largest = *std::max_element(bins.begin(), bins.end());
+    if (largest == 0) return {};
+    constexpr double kBarLength = 50;
+    TextTable table({{"degrees", Align::right}, {"tetrahedra", Align::right}, {""}});
+    std::size_t last = bins.size();
+    while (last > 0 && bins[last - 1] == 0) --last;
+    for (std::size_t i = 0; i < last; ++i) {
+        // Rounded up: a bin that holds anything shows something.
+        const auto length = static_cast<std::size_t>(std::ceil(kBarLength * static_cast<double>(bins[i]) / static_cast<double>(largest)));
+        table.add({fmt::format("{}-{}", 5 * i, 5 * i + 5), count(bins[i]), std::string(length, '#')});
+    }
+    return "Smallest dihedral angle of each tetrahedron\n" + table.str();
+}
+
+std::string render_regions(const Certificate& certificate) {
+    if (certificate.regions.empty()) return {};
+    TextTable table({{"region", Align::right}, {"tetrahedra", Align::right}, {"volume", Align::right}, {"input's volume", Align::right}, {"relative difference", Align::right}});
+    for (const RegionVolume& region : certificate.regions) {
+        std::vector<std::string> row = {fmt::format("{}", region.region), count(region.tets), fmt::format("{:.12g}", region.volume)};
+        if (region.plc_volume) {
+            row.push_back(fmt::format("{:.12g}", *region.plc_volume));
+            row.push_back(fmt::format("{:.1e}", std::abs(region.volume - *region.plc_volume) / std::abs(*region.plc_volume)));
+        }
+        table.add(std::move(row));
+    }
+    return "Regions\n" + table.str();
+}
+
+std::string render_stages(const std::vector<StageTime>& stages) {
+    TextTable table({{"stage"}, {"seconds", Align::right}, {"vertices after", Align::right}, {"tets after", Align::right}});
+    double total = 0;
+    for (const StageTime& stage : stages) {
+        const bool counted = stage.vertices_after > 0;
+        table.add({to_string(stage.stage), fmt::format("{:.3f}", stage.seconds), counted ? count(stage.vertices_after) : "",
+                   counted ? count(stage.tets_after) : ""});
+        total += stage.seconds;
+    }
+    table.add({"total", fmt::format("{:.3f}", total)});
+    return "Time\n" + table.str();
+}
+
+std::string render_diagnosis(const Diagnosis& diagnosis) {
+    std::string text = fmt::format("Complex: {} vertices, {} segments, {} facets, {} cells; planarity tolerance {:.3g}\n", diagnosis.vertices,
+                                   diagnosis.segments, diagnosis.facets, diagnosis.cells.size(), diagnosis.coplanar_tolerance);
+    if (diagnosis.defects.empty()) {
+        text += "Defects: none\n";
+    } else {
+        TextTable table({{"severity"}, {"defect"}, {"value", Align::right}, {"where"}, {"message"}});
+        for (const Defect& defect : diagnosis.defects)
+            table.add({to_string(defect.severity), to_string(defect.kind), number(defect.value), describe(defect.elements, 4), defect.message});
+        text += "Defects\n" + table.str();
+    }
+    if (!diagnosis.cells.empty()) {
+        TextTable table({{"region", Align::right}, {"meshed"}, {"volume", Align::right}, {"point inside"}});
+        for (const CellSummary& cell : diagnosis.cells)
+            table.add({fmt::format("{}", cell.region), cell.filled ? "yes" : "no", fmt::format("{:.12g}", cell.volume), point(cell.inside)});
+        text += "Cells\n" + table.str();
+    }
+    return text;
+}
+
+}  // namespace wellmesh::cli

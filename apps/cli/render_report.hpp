@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reports for people: plain text tables.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "wellmesh/certificate.hpp"
+#include "wellmesh/diagnosis.hpp"
+#include "wellmesh/result.hpp"
+
+namespace wellmesh::cli {
+
+[[nodiscard]] std::string describe(const ElementRef& element);                    ///< e.g. "facet 12 at (0, 1, 2)"
+[[nodiscard]] std::string describe(const std::vector<ElementRef>& elements, std::size_t at_most);
+[[nodiscard]] const char* to_string(Claim::State state) noexcept;
+[[nodiscard]] const char* to_string(Severity severity) noexcept;
+
+[[nodiscard]] std::string render_goals(const std::vector<AskedAchieved>& goals);
+[[nodiscard]] std::string render_claims(const Certificate& certificate);
+[[nodiscard]] std::string render_shape(const Certificate& certificate);           ///< all, interior, boundary side by side
+[[nodiscard]] std::string render_histogram(const ShapeStatistics& statistics);
+[[nodiscard]] std::string render_regions(const Certificate& certificate);
+[[nodiscard]] std::string render_stages(const std::vector<StageTime>& stages);
+[[nodiscard]] std::string render_diagnosis(const Diagnosis& diagnosis);
+
+}  // namespace wellmesh::cli
