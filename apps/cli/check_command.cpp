@@ -10,7 +10,6 @@
 #include "exit_status.hpp"
 #include "flags.hpp"
 #include "json_report.hpp"
-#include "output_file.hpp"
 #include "render_report.hpp"
 #include "wellmesh/io.hpp"
 
@@ -26,7 +25,7 @@ struct CheckCommand {
 
 int run(const CheckCommand& arguments) {
     require_valid(arguments.options);
-    if (!arguments.json.empty()) require_writable(arguments.json);
+    require_report(arguments.json, {arguments.mesh, arguments.plc});
     const TetMesh mesh = read_mesh(arguments.mesh);
     std::optional<Plc> plc;
     if (!arguments.plc.empty()) plc = read_plc(arguments.plc);

@@ -26,7 +26,9 @@ struct DelaunayCommand {
 int run(const DelaunayCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.write);
     require_mesh_outputs(arguments.outputs, arguments.points);
-    if (!arguments.json.empty()) require_writable(arguments.json);
+    std::vector<std::string> others = arguments.outputs;
+    others.push_back(arguments.points);
+    require_report(arguments.json, others);
 
     const Stopwatch reading;
     const std::vector<Vec3> points = read_points(arguments.points);

@@ -9,7 +9,6 @@
 #include "exit_status.hpp"
 #include "flags.hpp"
 #include "json_report.hpp"
-#include "output_file.hpp"
 #include "render_report.hpp"
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/io.hpp"
@@ -25,7 +24,7 @@ struct DoctorCommand {
 
 int run(const DoctorCommand& arguments) {
     require_valid(arguments.options);
-    if (!arguments.json.empty()) require_writable(arguments.json);
+    require_report(arguments.json, {arguments.input});
     const Diagnosis diagnosis = diagnose(read_plc(arguments.input), arguments.options);
     const int status = diagnosis.has_errors() ? kBadInput : kGoalsMet;
     if (!arguments.json.empty()) {

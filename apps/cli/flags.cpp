@@ -9,10 +9,13 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <system_error>
 
 #include "output_file.hpp"
@@ -27,17 +30,25 @@ namespace {
 constexpr std::array<const char*, 5> kMeshExtensions = {".mesh", ".vtu", ".msh", ".node", ".ele"};
 
 [[noreturn]] void bad_options(const std::vector<std::string>& problems) {
-    throw MeshError(ErrorCode::bad_options, Stage::read, fmt::format("{}", fmt::join(problems, "\n")));
+    throw MeshError(ErrorCode::bad_options, Stage::read, fmt::format("{}", fmt::join(problems, "\n  ")));
 }
 
 /// Seconds as people type them. The range keeps the product within 64 bits and refuses NaN.
-bool read_seconds(const std::string& text, std::optional<std::chrono::milliseconds>& time) {
+std::chrono::milliseconds read_seconds(const std::string& text, const std::string& flag) {
     constexpr double kLongest = 1e9;  // 31 years
     double seconds = 0;
-    if (!CLI::detail::lexical_cast(text, seconds)) return false;
-    if (!(seconds > 0 && seconds <= kLongest)) throw CLI::ValidationError("--time-limit", "must be above 0 and at most 1e9 seconds");
-    time = std::chrono::milliseconds(std::max<std::int64_t>(1, std::llround(seconds * 1000)));
-    return true;
+    if (!CLI::detail::lexical_cast(text, seconds) || !(seconds > 0 && seconds <= kLongest))
+        throw CLI::ValidationError(flag, fmt::format("must be above 0 and at most 1e9 seconds, not '{}'", text));
+    return std::chrono::milliseconds(std::max<std::int64_t>(1, std::llround(seconds * 1000)));
+}
+
+/// A whole number of 64 bits, all of the text; the parser's own conversion wraps negative and large ones.
+std::uint64_t read_count(const std::string& text, const std::string& flag) {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || stop != end) throw CLI::ValidationError(flag, fmt::format("must be a whole number from 0 to 2^64 - 1, not '{}'", text));
+    return value;
 }
 
 /// TetGen's family: one name stands for .node, .ele, .face and .edge, so that the first of these beside a .poly is its input.
@@ -74,14 +85,16 @@ void add_mesh_flags(CLI::App& command, MeshOptions& options) {
     command.add_option("--min-dihedral", options.quality.min_dihedral_angle_deg, "least dihedral angle, in degrees; 0 ignores slivers")
         ->type_name("DEG")->capture_default_str();
     add_coplanar_tolerance_flag(command, options);
-    command.add_option("--seed", options.seed, "seed of the pseudo-random choices; input, options and seed fix the output")
-        ->type_name("N")->capture_default_str();
-    command.add_option("--max-vertices", options.limits.max_vertices, "stop at this many vertices, input included (default: none)")->type_name("N");
     command.add_option_function<std::string>(
-        "--time-limit",
-        [&options](const std::string& text) {
-            if (!read_seconds(text, options.limits.time)) throw CLI::ConversionError(text, "--time-limit");
-        },
+        "--seed", [&options](const std::string& text) { options.seed = read_count(text, "--seed"); },
+        "seed of the pseudo-random choices; input, options and seed fix the output")
+        ->type_name("N")->default_str(fmt::format("{}", options.seed));
+    command.add_option_function<std::string>(
+        "--max-vertices", [&options](const std::string& text) { options.limits.max_vertices = read_count(text, "--max-vertices"); },
+        "stop at this many vertices, input included (default: none)")
+        ->type_name("N");
+    command.add_option_function<std::string>(
+        "--time-limit", [&options](const std::string& text) { options.limits.time = read_seconds(text, "--time-limit"); },
         "stop after this many seconds (default: none)")
         ->type_name("SECONDS");
 }
@@ -151,6 +164,15 @@ void require_mesh_outputs(const std::vector<std::string>& outputs, const std::st
     }
     if (!problems.empty()) bad_options(problems);
     for (const std::string& output : outputs) require_writable(output);
+}
+
+void require_report(const std::string& json, const std::vector<std::string>& others) {
+    if (json.empty()) return;
+    std::error_code ignored;
+    for (const std::string& other : others)
+        if (fs::weakly_canonical(json, ignored) == fs::weakly_canonical(other, ignored) || fs::equivalent(json, other, ignored))
+            bad_options({fmt::format("--json {}: writing it would replace {}", json, other)});
+    require_writable(json);
 }
 
 }  // namespace wellmesh::cli

@@ -31,4 +31,8 @@ void require_valid(const WriteOptions& options);
 ///         MeshError{cannot_write} for what can be known to fail.
 void require_mesh_outputs(const std::vector<std::string>& outputs, const std::string& input);
 
+/// @throws MeshError{bad_options} if the report `json` would replace one of `others`, MeshError{cannot_write} for what can be known
+///         to fail. An empty name is no report.
+void require_report(const std::string& json, const std::vector<std::string>& others);
+
 }  // namespace wellmesh::cli

@@ -13,7 +13,6 @@
 #include "exit_status.hpp"
 #include "flags.hpp"
 #include "json_report.hpp"
-#include "output_file.hpp"
 #include "progress_line.hpp"
 #include "render_report.hpp"
 #include "wellmesh/generate.hpp"
@@ -110,7 +109,9 @@ int run(const MeshCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.options);
     require_valid(arguments.write);
     require_mesh_outputs(arguments.outputs, arguments.input);
-    if (!arguments.json.empty()) require_writable(arguments.json);
+    std::vector<std::string> others = arguments.outputs;
+    others.push_back(arguments.input);
+    require_report(arguments.json, others);
     try {
         return mesh(arguments, interrupt);
     } catch (const MeshError& error) {

@@ -9,7 +9,6 @@
 #include "exit_status.hpp"
 #include "flags.hpp"
 #include "json_report.hpp"
-#include "output_file.hpp"
 #include "render_report.hpp"
 #include "wellmesh/io.hpp"
 
@@ -22,7 +21,7 @@ struct QualityCommand {
 };
 
 int run(const QualityCommand& arguments) {
-    if (!arguments.json.empty()) require_writable(arguments.json);
+    require_report(arguments.json, {arguments.mesh});
     const TetMesh mesh = read_mesh(arguments.mesh);
     Certificate certificate;
     measure_shape(mesh, certificate);

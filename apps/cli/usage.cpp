@@ -101,7 +101,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 int report_parse_error(const CLI::App& program, const CLI::ParseError& error) {
     const CLI::App& command = typed_command(program);
     if (error.get_name() == "CallForHelp" || error.get_name() == "CallForAllHelp") {
-        write_stdout(command.help());
+        write_stdout(&command == &program ? program.help() : command.help("wellmesh"));
         return kGoalsMet;
     }
     if (error.get_name() == "CallForVersion") {
@@ -109,7 +109,9 @@ int report_parse_error(const CLI::App& program, const CLI::ParseError& error) {
         return kGoalsMet;
     }
     const std::string unknown = first_unknown(program);
-    const std::string reason = unknown.empty() ? std::string(error.what()) : explain_unknown(program, unknown);
+    const std::string reason = !unknown.empty() ? explain_unknown(program, unknown)
+                               : &command == &program ? fmt::format("no command given; known are {}", fmt::join(command_names(program), " "))
+                                                      : std::string(error.what());
     const std::string name = &command == &program ? "wellmesh" : "wellmesh " + command.get_name();
     fmt::print(stderr, "{}: {}\nSee '{} --help'.\n", name, reason, name);
     return kUsage;
