@@ -67,6 +67,8 @@ std::size_t scale(const double* e, std::size_t m, double b, double* out) {
 
 }  // namespace
 
+double multiply_then_subtract(double x, double y, double z) { return x * y - z; }
+
 std::size_t add_expansions(const double* e, std::size_t m, const double* f, std::size_t n, double factor, double* out) {
     return compress(out, merge_sum(e, m, f, n, factor, out));
 }

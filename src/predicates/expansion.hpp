@@ -64,6 +64,9 @@ std::size_t add_expansions(const double* e, std::size_t m, const double* f, std:
 /// Writes e * f, compressed; returns the length. `out` holds min(2 m n, kMaxComponents) and aliases neither argument.
 std::size_t multiply_expansions(const double* e, std::size_t m, const double* f, std::size_t n, double* out);
 
+/// x * y - z as this library's compiler flags evaluate it: two roundings if they are right, one if they fuse. For tests.
+[[nodiscard]] double multiply_then_subtract(double x, double y, double z);
+
 /// An expansion of at most N components, on the stack.
 template <std::size_t N>
 class Expansion {

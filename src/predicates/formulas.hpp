@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The polynomials whose signs the predicates are, each written once. The ladder (ladder.hpp) evaluates them over doubles,
-// absolute values, first-order pairs and expansions. Arguments are differences of points.
+// absolute values, double-doubles and expansions. Arguments are differences of points.
 //
 // kDegree: of the polynomial in the differences; every monomial has it.
 // kRoundings: the most roundings that any monomial undergoes when the polynomial is evaluated over doubles from rounded
 // differences: its own factors' (one each) plus those of the operations that it passes through.
-// kPairRoundings: the same for the second member of a first-order pair, from exact members.
 #pragma once
 
 #include <array>
@@ -27,8 +26,7 @@ auto dot_product(const Triple<T>& p, const Triple<T>& q) {
 struct Orient3dFormula {
     static constexpr std::size_t kArguments = 3;
     static constexpr int kDegree = 3;
-    static constexpr int kRoundings = 8;      // differences 3, minor 2, product 1, sums 2
-    static constexpr int kPairRoundings = 7;  // minor 3, product 2, sums 2
+    static constexpr int kRoundings = 8;  // differences 3, minor 2, product 1, sums 2
     template <class T>
     static auto value(const std::array<Triple<T>, 3>& p) {
         const auto& [u, v, w] = p;
@@ -44,8 +42,6 @@ struct InsphereFormula {
     static constexpr int kDegree = 5;
     // lift: differences 2, product 1, sums 2; [pqr]: differences 3, minor 2, product 1, sums 2; product 1; sums 2
     static constexpr int kRoundings = 16;
-    // second member: lift 4 and [pqr] 5, or lift 3 and [pqr] 7; product 2; sums 2
-    static constexpr int kPairRoundings = 14;
     template <class T>
     static auto value(const std::array<Triple<T>, 4>& p) {
         const auto& [a, b, c, d] = p;
@@ -61,8 +57,7 @@ struct InsphereFormula {
 struct DiametralFormula {
     static constexpr std::size_t kArguments = 2;
     static constexpr int kDegree = 2;
-    static constexpr int kRoundings = 5;      // differences 2, product 1, sums 2
-    static constexpr int kPairRoundings = 4;  // product 2, sums 2
+    static constexpr int kRoundings = 5;  // differences 2, product 1, sums 2
     template <class T>
     static auto value(const std::array<Triple<T>, 2>& p) {
         return dot_product(p[0], p[1]);
@@ -77,8 +72,7 @@ struct DiametralFormula {
 struct EquatorialFormula {
     static constexpr std::size_t kArguments = 3;
     static constexpr int kDegree = 6;
-    static constexpr int kRoundings = 20;      // scalar products 5 each, product 1, difference 1, product 1, differences 2
-    static constexpr int kPairRoundings = 17;  // (3 and product of pairs 4 + 3 + 2, difference 1), product 2, differences 2
+    static constexpr int kRoundings = 20;  // scalar products 5 each, product 1, difference 1, product 1, differences 2
     template <class T>
     static auto value(const std::array<Triple<T>, 3>& p) {
         const auto& [u, v, w] = p;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <array>
+#include <cstddef>
 
 #include "core/vec3_math.hpp"
 #include "predicates/ladder.hpp"
@@ -18,9 +19,13 @@ namespace {
 /// It ends at the second step even: were the coefficients of two corners, a and b say, both zero, e would lie in the planes
 /// ecd + b and ecd + a, hence on line cd, and, being on the sphere, would be c or d.
 Sign break_tie(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
-    std::array<const Vec3*, 5> order{&a, &b, &c, &d, &e};
-    std::sort(order.begin(), order.end(), [](const Vec3* p, const Vec3* q) { return lexicographically_less(*q, *p); });
-    for (const Vec3* largest : order) {
+    std::array<const Vec3*, 5> rest{&a, &b, &c, &d, &e};
+    for (std::size_t n = rest.size(); n > 0; --n) {  // mostly leaves in the first round: no need to sort
+        std::size_t at = 0;
+        for (std::size_t i = 1; i < n; ++i)
+            if (lexicographically_less(*rest[at], *rest[i])) at = i;
+        const Vec3* largest = rest[at];
+        rest[at] = rest[n - 1];
         Sign sign = Sign::zero;
         if (largest == &a) sign = orient3d(e, b, c, d);
         else if (largest == &b) sign = orient3d(a, e, c, d);
@@ -29,7 +34,7 @@ Sign break_tie(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const
         else sign = -orient3d(a, b, c, d);
         if (sign != Sign::zero) return sign;
     }
-    return Sign::zero;
+    return Sign::zero;  // a, b, c, d and e are coplanar
 }
 
 }  // namespace

@@ -6,7 +6,11 @@
 // by kDifferenceScale, so underflow costs nothing and all errors are relative (exact_range.hpp).
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "predicates/exact_range.hpp"
@@ -30,15 +34,34 @@ struct Magnitude {
     friend Magnitude operator*(Magnitude p, Magnitude q) { return {p.value * q.value}; }
 };
 
-/// value + slope * (small): evaluating a polynomial at (h, t) gives its first-order change from h to h + t as slope.
-struct FirstOrderPair {
-    double value = 0, slope = 0;
-    friend FirstOrderPair operator+(const FirstOrderPair& p, const FirstOrderPair& q) { return {p.value + q.value, p.slope + q.slope}; }
-    friend FirstOrderPair operator-(const FirstOrderPair& p, const FirstOrderPair& q) { return {p.value - q.value, p.slope - q.slope}; }
-    friend FirstOrderPair operator*(const FirstOrderPair& p, const FirstOrderPair& q) {
-        return {p.value * q.value, p.value * q.slope + p.slope * q.value};
+/// Double-double arithmetic without branches: high + low with |low| <= eps |high|. Errors, to first order in eps^2 (what is
+/// of third order fits into the next integer):
+///   sum: x.low + y.low and adding it to the sum's own error, at most eps (|x| + |y|) each before rounding, cost 1 + 2 eps^2;
+///     so at most 4 eps^2 (|x| + |y|). Cancellation is no matter: everything is measured against magnitudes.
+///   product: the neglected x.low y.low costs 1, the two rounded cross products 1 each, their sum 2, adding it 3 eps^2 |x y|;
+///     so at most 9 eps^2 |x y|.
+struct DoubleDouble {
+    double high = 0, low = 0;
+    friend DoubleDouble operator+(const DoubleDouble& x, const DoubleDouble& y) {
+        const TwoTerms sum = two_sum(x.high, y.high);
+        const TwoTerms result = two_sum(sum.high, sum.low + (x.low + y.low));
+        return {result.high, result.low};
+    }
+    friend DoubleDouble operator-(const DoubleDouble& x, const DoubleDouble& y) { return x + DoubleDouble{-y.high, -y.low}; }
+    friend DoubleDouble operator*(const DoubleDouble& x, const DoubleDouble& y) {
+        const TwoTerms product = two_product(x.high, y.high);
+        const TwoTerms result = fast_two_sum(product.high, product.low + (x.high * y.low + x.low * y.high));
+        return {result.high, result.low};
     }
 };
+
+/// The largest power of two that divides `value`, which is not zero nor subnormal.
+inline double lowest_bit(double value) {
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(value);
+    const int zeros = std::countr_zero(bits | (std::uint64_t{1} << 52));
+    // 2^(exponent - 52 + zeros), by its own bits; in range the exponent never gets near the ends of its field
+    return std::bit_cast<double>((bits & 0x7ff0000000000000) - (static_cast<std::uint64_t>(52 - zeros) << 52));
+}
 
 template <class Formula>
 class Ladder {
@@ -55,46 +78,52 @@ public:
 
     /// Error of the value over doubles: each monomial carries at most kRoundings factors (1 + delta), |delta| <= eps.
     [[nodiscard]] std::optional<Sign> forward_bound() {
-        const double value = Formula::value(heads_);
+        value_ = Formula::value(heads_);
         permanent_ = Formula::value(map<Magnitude>([](double h) { return Magnitude{std::fabs(h)}; })).value;
         const double bound = bound_of_roundings(Formula::kRoundings) * permanent_;
-        if (value > bound) return Sign::positive;
-        if (value < -bound) return Sign::negative;
+        if (value_ > bound) return Sign::positive;
+        if (value_ < -bound) return Sign::negative;
         if (permanent_ == 0) return Sign::zero;  // every monomial has a factor that is exactly zero (a difference is zero iff rounded so)
         return std::nullopt;
+    }
+
+    /// Doubles that happen to be exact: all differences are representable multiples of a power of two q, and P < 2^53 q^d.
+    /// An intermediate value of degree k is a multiple of q^k, thus exact if the sum of its absolute monomials is below 2^53 q^k.
+    /// That holds where the value matters: it is multiplied by a cofactor of degree d - k, which is either zero (then so is the
+    /// exact product, whatever the value) or has absolute monomials of at least q^(d-k), and the product of the two sums is a
+    /// part of P. 2^52 leaves room for the rounding of P where P is too large. Grids and hand-made input come here with ties.
+    /// @pre forward_bound, find_tails
+    [[nodiscard]] std::optional<Sign> exact_doubles() const {
+        if (has_tails_) return std::nullopt;
+        double q = kDifferenceScale * kMaxMagnitude;
+        for (const Triple<double>& h : heads_)
+            for (const double component : {h.x, h.y, h.z})
+                if (component != 0) q = std::min(q, lowest_bit(component));
+        double limit = 0x1p52;
+        for (int i = 0; i < Formula::kDegree; ++i) limit *= q;
+        if (!(permanent_ < limit)) return std::nullopt;
+        return value_ > 0 ? Sign::positive : value_ < 0 ? Sign::negative : Sign::zero;
     }
 
     void find_tails(const Points& points, const Vec3& origin) {
         has_tails_ = false;
         for (std::size_t i = 0; i < kArguments; ++i) {
-            tails_[i] = {kDifferenceScale * two_difference(points[i]->x, origin.x).low, kDifferenceScale * two_difference(points[i]->y, origin.y).low,
+            tails_[i] = {kDifferenceScale * two_difference(points[i]->x, origin.x).low,
+                         kDifferenceScale * two_difference(points[i]->y, origin.y).low,
                          kDifferenceScale * two_difference(points[i]->z, origin.z).low};
             has_tails_ = has_tails_ || tails_[i].x != 0 || tails_[i].y != 0 || tails_[i].z != 0;
         }
     }
 
-    /// @pre find_tails
-    [[nodiscard]] std::optional<Sign> exact_differences() {
-        const auto value = Formula::value(map<Expansion<1>>([](double h) { return Expansion<1>(h); }));
-        value_at_heads_ = value.estimate();
-        if (has_tails_) return std::nullopt;
-        return value.sign();
-    }
-
-    /// The formula at h + t is f(h), of which we know the sum up to 2 eps |estimate|, plus the slope, plus higher orders.
-    /// Relative to P, d the degree: the slope's monomials sum to d eps at most, and each is computed with kPairRoundings;
-    /// the higher orders are (1 + eps)^d - 1 - d eps < d^2 eps^2. The last sum's rounding: eps of itself, below
-    /// eps (|estimate| + |slope|), of which the slope's part is below d eps^2 P (1 + ...).
-    /// So the error is below (d kPairRoundings + d^2 + d) eps^2 P + 4 eps |estimate|, with a third of P's part to spare.
-    /// @pre forward_bound, exact_differences
-    [[nodiscard]] std::optional<Sign> first_order() const {
-        constexpr int d = Formula::kDegree;
-        constexpr double factor = (d * Formula::kPairRoundings + d * d + d) * (4.0 / 3.0) * kEpsilon * kEpsilon;
-        std::array<Triple<FirstOrderPair>, kArguments> pairs{};
+    /// Differences are exact double-doubles, so a monomial passes through fewer than kRoundings operations; each costs at most
+    /// 9 eps^2 of it. 10 leaves room for third-order terms and for the rounding of P, both of the order of kRoundings eps.
+    /// @pre forward_bound, find_tails
+    [[nodiscard]] std::optional<Sign> double_double() const {
+        std::array<Triple<DoubleDouble>, kArguments> differences;
         for (std::size_t i = 0; i < kArguments; ++i)
-            pairs[i] = {{heads_[i].x, tails_[i].x}, {heads_[i].y, tails_[i].y}, {heads_[i].z, tails_[i].z}};
-        const double value = value_at_heads_ + Formula::value(pairs).slope;
-        const double bound = factor * permanent_ + 4 * kEpsilon * std::fabs(value_at_heads_);
+            differences[i] = {{heads_[i].x, tails_[i].x}, {heads_[i].y, tails_[i].y}, {heads_[i].z, tails_[i].z}};
+        const double value = Formula::value(differences).high;  // relative error eps, well within the bound's room
+        const double bound = 10 * Formula::kRoundings * kEpsilon * kEpsilon * permanent_;
         if (value > bound) return Sign::positive;
         if (value < -bound) return Sign::negative;
         return std::nullopt;
@@ -102,6 +131,7 @@ public:
 
     /// @pre find_tails
     [[nodiscard]] Sign exact() const {
+        if (!has_tails_) return Formula::value(map<Expansion<1>>([](double h) { return Expansion<1>(h); })).sign();
         std::array<Triple<Expansion<2>>, kArguments> differences;
         for (std::size_t i = 0; i < kArguments; ++i)
             differences[i] = {Expansion<2>(TwoTerms{heads_[i].x, tails_[i].x}), Expansion<2>(TwoTerms{heads_[i].y, tails_[i].y}),
@@ -118,19 +148,19 @@ private:
     }
 
     std::array<Triple<double>, kArguments> heads_, tails_;
-    double permanent_ = 0, value_at_heads_ = 0;
+    double value_ = 0, permanent_ = 0;
     bool has_tails_ = false;
 };
 
 void count_exact_predicate_call() noexcept;
 
-/// Expansion arithmetic, kept out of the callers' instruction stream.
+/// The slow rungs, kept out of the callers' instruction stream.
 template <class Formula>
-[[gnu::noinline]] Decision climb_exact(Ladder<Formula>& ladder, const typename Ladder<Formula>::Points& points, const Vec3& origin) {
-    count_exact_predicate_call();
+[[gnu::noinline]] Decision climb_slowly(Ladder<Formula>& ladder, const typename Ladder<Formula>::Points& points, const Vec3& origin) {
     ladder.find_tails(points, origin);
-    if (const auto sign = ladder.exact_differences()) return {*sign, Rung::exact_differences};
-    if (const auto sign = ladder.first_order()) return {*sign, Rung::first_order};
+    if (const auto sign = ladder.exact_doubles()) return {*sign, Rung::exact_doubles};
+    if (const auto sign = ladder.double_double()) return {*sign, Rung::double_double};
+    count_exact_predicate_call();
     return {ladder.exact(), Rung::exact};
 }
 
@@ -138,20 +168,23 @@ template <class Formula>
 Decision climb(const typename Ladder<Formula>::Points& points, const Vec3& origin) {
     Ladder<Formula> ladder(points, origin);
     if (const auto sign = ladder.forward_bound()) return {*sign, Rung::forward_bound};
-    return climb_exact(ladder, points, origin);
+    return climb_slowly(ladder, points, origin);
 }
 
 /// One rung alone, for tests.
 template <class Formula>
 std::optional<Sign> single_rung(Rung rung, const typename Ladder<Formula>::Points& points, const Vec3& origin) {
     Ladder<Formula> ladder(points, origin);
-    const auto forward = ladder.forward_bound();
-    if (rung == Rung::forward_bound) return forward;
+    const auto from_forward_bound = ladder.forward_bound();
     ladder.find_tails(points, origin);
-    if (rung == Rung::exact) return ladder.exact();
-    const auto from_heads = ladder.exact_differences();
-    if (rung == Rung::exact_differences) return from_heads;
-    if (rung == Rung::first_order) return ladder.first_order();
+    switch (rung) {
+        case Rung::forward_bound: return from_forward_bound;
+        case Rung::exact_doubles: return ladder.exact_doubles();
+        case Rung::double_double: return ladder.double_double();
+        case Rung::exact: return ladder.exact();
+        case Rung::static_filter:
+        case Rung::perturbation: break;
+    }
     return std::nullopt;
 }
 

@@ -12,12 +12,12 @@ namespace wellmesh {
 
 /// Which step decided, from the cheapest.
 enum class Rung : std::uint8_t {
-    static_filter,      ///< determinant against the bound of the bounding box
-    forward_bound,      ///< determinant against the bound from this call's magnitudes
-    exact_differences,  ///< expansion of the differences, which were all representable
-    first_order,        ///< expansion of the rounded differences plus the first-order effect of their errors, against a bound
-    exact,              ///< expansion of the unrounded differences
-    perturbation        ///< the exact value is zero: symbolic perturbation
+    static_filter,  ///< determinant against the bound of the bounding box
+    forward_bound,  ///< determinant against the bound from this call's magnitudes
+    exact_doubles,  ///< determinant over doubles, every step of which was exact
+    double_double,  ///< determinant over double-doubles against a bound from this call's magnitudes
+    exact,          ///< expansion arithmetic
+    perturbation    ///< the exact value is zero: symbolic perturbation
 };
 
 struct Decision {
@@ -31,7 +31,7 @@ struct Decision {
 [[nodiscard]] Decision decide_side_of_diametral_sphere(const Vec3& a, const Vec3& b, const Vec3& p);
 [[nodiscard]] Decision decide_side_of_equatorial_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
 
-/// One rung alone: forward_bound, exact_differences, first_order or exact. Empty: it cannot decide.
+/// One rung alone: forward_bound, exact_doubles, double_double or exact. Empty: it cannot decide.
 [[nodiscard]] std::optional<Sign> orient3d_rung(Rung rung, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 [[nodiscard]] std::optional<Sign> insphere_rung(Rung rung, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
 [[nodiscard]] std::optional<Sign> diametral_rung(Rung rung, const Vec3& a, const Vec3& b, const Vec3& p);
