@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "wellmesh/error.hpp"
 #include "wellmesh/plc.hpp"
 #include "wellmesh/tet_mesh.hpp"
 

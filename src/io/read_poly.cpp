@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// TetGen's .poly and .smesh: points (or none, then the .node file beside), facets, hole seeds, region seeds. Missing hole and region
+// parts mean none. What follows the region part is passed over: such files carry notes there.
+// A facet that consists of two-vertex polygons alone has no area: it is read as segments with the facet's marker.
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/plc_building.hpp"
+#include "io/readers.hpp"
+#include "io/tetgen_nodes.hpp"
+
+namespace wellmesh::io {
+namespace {
+
+constexpr std::size_t kLeastRecordBytes = 2;  // one digit and a line end
+constexpr std::size_t kLeastSeedBytes = 8;    // "1 0 0 0\n"
+
+class PolyReader {
+public:
+    PolyReader(const SourceFile& source, bool one_polygon_a_line)
+        : in_(source, kTetgenSyntax), smesh_(one_polygon_a_line), nodes_name_(source.name), nodes_(read_nodes(source)), numbering_(nodes_) {
+        plc_.source_name = source.name;
+    }
+
+    Plc read() {
+        read_facets();
+        if (!numbering_.sequential()) resolve_numbers();
+        separate_segments();
+        if (!in_.at_end()) read_holes();
+        if (!in_.at_end()) read_regions();
+        plc_.vertices = std::move(nodes_.points);
+        plc_.vertex_markers = std::move(nodes_.markers);
+        if (nodes_name_ == plc_.source_name) plc_.vertex_lines = std::move(nodes_.lines);  // lines of another file would mislead
+        plc_.first_number = numbering_.first_number();
+        plc_.relative_rounding = precision_.relative_rounding();
+        normalise_zeros(plc_.vertices);
+        return std::move(plc_);
+    }
+
+private:
+    NodeList read_nodes(const SourceFile& source) {
+        NodeList nodes = read_node_list(in_, precision_);
+        if (!nodes.points.empty()) return nodes;
+        std::filesystem::path beside = source.path;
+        beside.replace_extension(".node");
+        const SourceFile node_file = read_source(beside);
+        TextScanner node_scanner(node_file, kTetgenSyntax);
+        nodes = read_node_list(node_scanner, precision_);
+        if (!node_scanner.at_end()) node_scanner.fail_expected(node_scanner.next(), "nothing after the points");
+        nodes_name_ = node_file.name;
+        return nodes;
+    }
+
+    void read_facets() {
+        const std::size_t facets = in_.count("the number of facets", kLeastRecordBytes);
+        if (!in_.at_end_of_line()) has_markers_ = in_.to_integer(in_.next_on_line(), "the number of boundary markers of facets (0 or 1)") != 0;
+        in_.skip_line();
+        plc_.facets.reserve(facets);
+        plc_.facet_lines.reserve(facets);
+        for (std::size_t f = 0; f < facets; ++f) {
+            PlcFacet& facet = plc_.facets.emplace_back();
+            if (smesh_)
+                read_smesh_facet(facet);
+            else
+                read_poly_facet(facet);
+        }
+    }
+
+    void read_smesh_facet(PlcFacet& facet) {
+        facet.polygons.push_back(read_polygon(&plc_.facet_lines));
+        if (has_markers_ && !in_.at_end_of_line()) facet.marker = in_.to_reference(in_.next_on_line(), "a boundary marker");
+        // A file without markers may have that column all the same, as TetGen allows; more than it is a wrong count.
+        if (!has_markers_ && !in_.at_end_of_line()) (void)in_.to_real(in_.next_on_line(), "a boundary marker");
+        expect_line_end("the polygon");
+    }
+
+    void read_poly_facet(PlcFacet& facet) {
+        const std::size_t polygons = in_.count("the number of polygons of a facet", kLeastRecordBytes);
+        plc_.facet_lines.push_back(in_.line32());
+        std::size_t holes = 0;
+        if (!in_.at_end_of_line()) holes = in_.to_count(in_.next_on_line(), "the number of holes of a facet", kLeastSeedBytes);
+        if (!in_.at_end_of_line()) {
+            const std::int32_t marker = in_.to_reference(in_.next_on_line(), "a boundary marker");
+            if (has_markers_) facet.marker = marker;
+        }
+        expect_line_end("the facet's counts and marker");
+        facet.polygons.reserve(polygons);
+        for (std::size_t p = 0; p < polygons; ++p) {
+            facet.polygons.push_back(read_polygon(nullptr));
+            expect_line_end("the polygon");
+        }
+        facet.holes.reserve(holes);
+        for (std::size_t h = 0; h < holes; ++h) facet.holes.push_back(read_numbered_seed());
+    }
+
+    /// Corners may continue over lines. @param lines  where to note the line it begins on; may be null
+    std::vector<std::uint32_t> read_polygon(std::vector<std::uint32_t>* lines) {
+        const std::size_t corners = in_.count("the number of vertices of a polygon", kLeastRecordBytes);
+        if (lines != nullptr) lines->push_back(in_.line32());
+        std::vector<std::uint32_t> polygon(corners);
+        for (std::uint32_t& corner : polygon) {
+            const std::string_view token = in_.next();
+            if (numbering_.sequential())
+                corner = vertex_index(in_, in_.to_integer(token, "a vertex number"), numbering_.first(), numbering_.size());
+            else
+                corner = vertex_number(in_, token);
+        }
+        return polygon;
+    }
+
+    void expect_line_end(const char* what) {
+        if (!in_.at_end_of_line()) in_.fail_expected(in_.next_on_line(), fmt::format("the line to end after {}", what).c_str());
+    }
+
+    /// The file's numbers to indices: as the list states them if all used ones exist, else as TetGen counts.
+    void resolve_numbers() {
+        using Lookup = std::optional<std::uint32_t> (NodeNumbering::*)(std::uint32_t) const;
+        const auto first_unknown = [&](Lookup lookup) -> std::optional<std::pair<std::size_t, std::uint32_t>> {
+            for (std::size_t f = 0; f < plc_.facets.size(); ++f)
+                for (const auto& polygon : plc_.facets[f].polygons)
+                    for (const std::uint32_t number : polygon)
+                        if (!(numbering_.*lookup)(number)) return std::pair{f, number};
+            return std::nullopt;
+        };
+        Lookup lookup = &NodeNumbering::as_stated;
+        if (first_unknown(lookup)) {
+            lookup = &NodeNumbering::as_counted;
+            if (const auto unknown = first_unknown(lookup))
+                fail_at_line(in_.source(), plc_.facet_lines[unknown->first],
+                             fmt::format("vertex {} is used, but the list of points {} (first out of order: {}:{})", unknown->second,
+                                         numbering_.repeats() ? "repeats numbers" : "lacks that number", nodes_name_, numbering_.irregular_line()));
+        }
+        for (PlcFacet& facet : plc_.facets)
+            for (auto& polygon : facet.polygons)
+                for (std::uint32_t& number : polygon) number = *(numbering_.*lookup)(number);
+    }
+
+    void separate_segments() {
+        std::size_t kept = 0;
+        for (std::size_t f = 0; f < plc_.facets.size(); ++f) {
+            PlcFacet& facet = plc_.facets[f];
+            const bool no_area = !facet.polygons.empty() && facet.holes.empty() &&
+                                 std::all_of(facet.polygons.begin(), facet.polygons.end(), [](const auto& p) { return p.size() == 2; });
+            if (no_area) {
+                for (const auto& polygon : facet.polygons) plc_.segments.push_back({{polygon[0], polygon[1]}, facet.marker});
+                continue;
+            }
+            if (kept != f) {
+                plc_.facets[kept] = std::move(facet);
+                plc_.facet_lines[kept] = plc_.facet_lines[f];
+            }
+            ++kept;
+        }
+        plc_.facets.resize(kept);
+        plc_.facet_lines.resize(kept);
+    }
+
+    Vec3 read_numbered_seed() {
+        (void)in_.integer("the number of a hole or region");
+        const Vec3 seed = read_seed(in_);
+        return seed;
+    }
+
+    void read_holes() {
+        const std::size_t holes = in_.count("the number of holes", kLeastSeedBytes);
+        plc_.hole_seeds.reserve(holes);
+        in_.skip_line();
+        for (std::size_t h = 0; h < holes; ++h) {
+            plc_.hole_seeds.push_back(read_numbered_seed());
+            in_.skip_line();
+        }
+    }
+
+    void read_regions() {
+        const std::size_t regions = in_.count("the number of regions", kLeastSeedBytes);
+        plc_.region_seeds.reserve(regions);
+        in_.skip_line();
+        for (std::size_t r = 0; r < regions; ++r) {
+            RegionSeed seed;
+            seed.point = read_numbered_seed();
+            seed.id = in_.to_reference(in_.next_on_line(), "an integer region attribute");
+            if (!in_.at_end_of_line()) seed.max_volume = in_.to_real(in_.next_on_line(), "a volume bound");
+            plc_.region_seeds.push_back(seed);
+            in_.skip_line();
+        }
+    }
+
+    TextScanner in_;
+    bool smesh_;
+    std::string nodes_name_;  // file that lists the points
+    TextPrecision precision_;
+    Plc plc_;
+    NodeList nodes_;
+    NodeNumbering numbering_;
+    bool has_markers_ = false;
+};
+
+}  // namespace
+
+Plc read_poly(const SourceFile& source) {
+    return PolyReader(source, false).read();
+}
+
+Plc read_smesh(const SourceFile& source) {
+    return PolyReader(source, true).read();
+}
+
+}  // namespace wellmesh::io

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// One reader a format. All throw MeshError{bad_input} with file, line (byte or element for binary data) and token.
+#pragma once
+
+#include <vector>
+
+#include "io/source_file.hpp"
+#include "wellmesh/plc.hpp"
+#include "wellmesh/tet_mesh.hpp"
+
+namespace wellmesh::io {
+
+[[nodiscard]] Plc read_off(const SourceFile& source);
+[[nodiscard]] Plc read_stl(const SourceFile& source);
+[[nodiscard]] Plc read_obj(const SourceFile& source);
+[[nodiscard]] Plc read_ply(const SourceFile& source);
+[[nodiscard]] Plc read_poly(const SourceFile& source);           ///< .poly
+[[nodiscard]] Plc read_smesh(const SourceFile& source);          ///< .smesh
+[[nodiscard]] Plc read_medit_surface(const SourceFile& source);  ///< triangles and quadrilaterals of a .mesh
+
+[[nodiscard]] std::vector<Vec3> read_node_points(const SourceFile& source);
+[[nodiscard]] std::vector<Vec3> read_xyz_points(const SourceFile& source);
+[[nodiscard]] std::vector<Vec3> read_ply_points(const SourceFile& source);
+
+[[nodiscard]] TetMesh read_medit_mesh(const SourceFile& source);
+/// .node and .ele, and .face and .edge where they exist. @param path  the .node or the .ele file
+[[nodiscard]] TetMesh read_tetgen_mesh(const std::filesystem::path& path);
+
+}  // namespace wellmesh::io

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/tetgen_nodes.hpp"
+
+#include <fmt/format.h>
+
+#include "io/number_parsing.hpp"
+#include "io/plc_building.hpp"
+
+namespace wellmesh::io {
+
+NodeList read_node_list(TextScanner& in, TextPrecision& precision) {
+    constexpr std::size_t kLeastPointBytes = 8;  // "1 0 0 0\n"
+    NodeList nodes;
+    const std::size_t points = in.count("the number of points", kLeastPointBytes);
+    if (points > kMostVertices) in.fail(fmt::format("{} points are more than 32-bit numbers hold", points));
+    std::int64_t dimension = 3, attributes = 0, markers = 0;
+    if (!in.at_end_of_line()) dimension = in.to_integer(in.next_on_line(), "the dimension");
+    if (dimension != 3) in.fail(fmt::format("the dimension is {}, only 3 is supported", dimension));
+    if (!in.at_end_of_line()) attributes = in.to_integer(in.next_on_line(), "the number of attributes");
+    if (attributes < 0) in.fail("the number of attributes cannot be negative");
+    if (!in.at_end_of_line()) markers = in.to_integer(in.next_on_line(), "the number of boundary markers (0 or 1)");
+    if (markers != 0 && markers != 1) in.fail(fmt::format("the number of boundary markers is 0 or 1, not {}", markers));
+    if (!in.at_end_of_line()) in.fail_expected(in.next_on_line(), "the end of the line after the counts");
+
+    nodes.points.reserve(points);
+    nodes.numbers.reserve(points);
+    nodes.lines.reserve(points);
+    if (markers == 1) nodes.markers.reserve(points);
+    for (std::size_t i = 0; i < points; ++i) {
+        nodes.numbers.push_back(vertex_number(in, in.next()));
+        nodes.lines.push_back(in.line32());
+        Vec3 point;
+        for (double* const coordinate : {&point.x, &point.y, &point.z}) {
+            const std::string_view token = in.next_on_line();
+            *coordinate = in.to_real(token, "a coordinate");
+            precision.note(token, *coordinate);
+        }
+        nodes.points.push_back(point);
+        for (std::int64_t a = 0; a < attributes; ++a) (void)in.to_real(in.next_on_line(), "an attribute");
+        if (markers == 1) nodes.markers.push_back(in.to_reference(in.next_on_line(), "a boundary marker"));
+        in.skip_line();
+    }
+    return nodes;
+}
+
+std::uint32_t vertex_number(const TextScanner& in, std::string_view token) {
+    const std::int64_t number = in.to_integer(token, "a vertex number");
+    if (number < 0 || number > static_cast<std::int64_t>(kMostVertices)) in.fail(fmt::format("vertex number {} is out of range", number));
+    return static_cast<std::uint32_t>(number);
+}
+
+NodeNumbering::NodeNumbering(const NodeList& nodes) : size_(nodes.numbers.size()) {
+    if (size_ == 0) return;
+    first_ = nodes.numbers.front();
+    for (std::size_t i = 0; i < size_ && sequential_; ++i)
+        if (nodes.numbers[i] != first_ + static_cast<std::uint64_t>(i)) {
+            sequential_ = false;
+            irregular_line_ = nodes.lines[i];
+        }
+    if (sequential_) return;
+    index_of_.reserve(size_);
+    for (std::size_t i = 0; i < size_; ++i)
+        if (!index_of_.try_emplace(nodes.numbers[i], static_cast<std::uint32_t>(i)).second) repeats_ = true;
+}
+
+std::optional<std::uint32_t> NodeNumbering::as_stated(std::uint32_t number) const {
+    if (sequential_) {
+        if (number < first_ || number - first_ >= size_) return std::nullopt;
+        return number - first_;
+    }
+    const auto at = index_of_.find(number);
+    if (repeats_ || at == index_of_.end()) return std::nullopt;
+    return at->second;
+}
+
+std::optional<std::uint32_t> NodeNumbering::as_counted(std::uint32_t number) const {
+    if (first_ > 1 || number < first_ || number - first_ >= size_) return std::nullopt;
+    return number - first_;
+}
+
+}  // namespace wellmesh::io
