@@ -3,7 +3,7 @@
 """Checks what a compiler does not.
 
 - every source file, script and CMake helper says its licence in its first three lines,
-- every [Key] cited in a comment stands in docs/references.md, and every key there is cited,
+- every key cited in a comment ([Key], [Key, Key], [Key sec. 3]) stands in docs/references.md, and every key there is cited,
 - relative links in Markdown files lead somewhere.
 
 Usage: check_sources.py [ROOT]. Prints each violation as file:line: message; exit status 1 if there is one.
@@ -12,7 +12,8 @@ import pathlib
 import re
 import sys
 
-KEY = re.compile(r"\[([A-Z][A-Za-z]+[0-9]{2}[a-z]?)\]")
+KEY = re.compile(r"\b[A-Z][A-Za-z]+[0-9]{2}[a-z]?\b")
+CITATION = re.compile(rf"\[({KEY.pattern}[^\[\]]*)\]")  # [Key], [Key, Key] or [Key sec. 3]
 LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)[^)]*\)")
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
 CODE = (".hpp", ".cpp", ".py", ".in")
@@ -41,7 +42,8 @@ def check_citations(root):
     documents = [p for p in sorted((root / "docs").rglob("*.md")) if p != references] + [root / "README.md", root / "src" / "README.md"]
     for path in [*files(root, (".hpp", ".cpp", ".py")), *documents]:
         for number, line in enumerate(path.read_text().splitlines(), 1):
-            for key in KEY.findall(line):
+            text = line.partition("//")[2] if path.suffix in (".hpp", ".cpp") else line
+            for key in [key for citation in CITATION.findall(text) for key in KEY.findall(citation)]:
                 cited.add(key)
                 if key not in known:
                     yield path, number, f"[{key}] is not in docs/references.md"
