@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stop_token>
 #include <vector>
 
 #include "wellmesh/error.hpp"
@@ -23,7 +24,9 @@ namespace wellmesh {
 
 /// Which flavour of a format to write where there are several.
 struct WriteOptions {
-    int msh_version = 41;  ///< 41 or 22
+    int msh_version = 41;    ///< 41 or 22
+    bool sync = false;       ///< force the data to the disk before a file appears under its name
+    std::stop_token stop{};  ///< polled while writing; when requested: MeshError{cancelled}, and no file is left
 };
 
 /// Writes .mesh .vtu .msh, or .node/.ele/.face/.edge (named after the .node or .ele path).

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which reader or writer a file's extension names.
+#include <cmath>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,22 +19,51 @@ namespace {
                     {{EntityKind::file, 0, {}}});
 }
 
-/// A mesh whose parallel arrays disagree would make writers read beyond their ends.
-void check_lengths(const TetMesh& mesh) {
+[[noreturn]] void bad_output(EntityKind kind, std::uint64_t number, const std::string& what) {
+    throw MeshError(ErrorCode::bad_input, Stage::write, fmt::format("cannot write: {} {}", to_string(kind), what), {{kind, number, {}}});
+}
+
+void check_finite(const std::vector<Vec3>& vertices) {
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+        if (!std::isfinite(vertices[v].x) || !std::isfinite(vertices[v].y) || !std::isfinite(vertices[v].z))
+            bad_output(EntityKind::vertex, v, fmt::format("{} (from 0) is not finite", v));
+}
+
+void check_corner(std::uint32_t vertex, std::size_t vertices, EntityKind kind, std::size_t number) {
+    if (vertex >= vertices) bad_output(kind, number, fmt::format("{} (from 0) uses vertex {}, but there are only {}", number, vertex, vertices));
+}
+
+/// Arrays that disagree would make the writers read beyond their ends.
+void check_writable(const TetMesh& mesh) {
     if (mesh.tet_regions.size() != mesh.tets.size() || mesh.subface_facets.size() != mesh.subfaces.size() ||
         mesh.subface_markers.size() != mesh.subfaces.size() || mesh.subsegment_segments.size() != mesh.subsegments.size())
-        throw MeshError(ErrorCode::bad_input, Stage::write, "the mesh's arrays of one kind of element differ in length");
+        throw MeshError(ErrorCode::bad_input, Stage::write, "cannot write: the mesh's arrays of one kind of element differ in length");
+    check_finite(mesh.vertices);
     const auto check = [&](const auto& elements, EntityKind kind) {
         for (std::size_t i = 0; i < elements.size(); ++i)
-            for (const std::uint32_t v : elements[i])
-                if (v >= mesh.vertices.size())
-                    throw MeshError(ErrorCode::bad_input, Stage::write,
-                                    fmt::format("{} {} of the mesh uses vertex {}, but there are only {}", to_string(kind), i, v, mesh.vertices.size()),
-                                    {{kind, i, {}}});
+            for (const std::uint32_t v : elements[i]) check_corner(v, mesh.vertices.size(), kind, i);
     };
     check(mesh.tets, EntityKind::tetrahedron);
     check(mesh.subfaces, EntityKind::triangle);
     check(mesh.subsegments, EntityKind::edge);
+}
+
+void check_writable(const Plc& plc) {
+    if (!plc.vertex_markers.empty() && plc.vertex_markers.size() != plc.vertices.size())
+        throw MeshError(ErrorCode::bad_input, Stage::write, "cannot write: the complex has another number of vertex markers than of vertices");
+    check_finite(plc.vertices);
+    check_finite(plc.hole_seeds);
+    for (std::size_t f = 0; f < plc.facets.size(); ++f) {
+        check_finite(plc.facets[f].holes);
+        for (const auto& polygon : plc.facets[f].polygons)
+            for (const std::uint32_t v : polygon) check_corner(v, plc.vertices.size(), EntityKind::facet, f);
+    }
+    for (std::size_t s = 0; s < plc.segments.size(); ++s)
+        for (const std::uint32_t v : plc.segments[s].vertices) check_corner(v, plc.vertices.size(), EntityKind::segment, s);
+    for (const RegionSeed& seed : plc.region_seeds) {
+        check_finite({seed.point});
+        if (!std::isfinite(seed.max_volume)) bad_output(EntityKind::region, 0, "has a volume bound that is not finite");
+    }
 }
 
 }  // namespace
@@ -40,22 +72,58 @@ Plc read_plc(const std::filesystem::path& path) {
     const std::string extension = io::lower_case_extension(path);
     Plc (*const reader)(const io::SourceFile&) = extension == ".off"     ? io::read_off
                                                  : extension == ".stl"   ? io::read_stl
+                                                 : extension == ".obj"   ? io::read_obj
+                                                 : extension == ".ply"   ? io::read_ply
                                                  : extension == ".poly"  ? io::read_poly
                                                  : extension == ".smesh" ? io::read_smesh
+                                                 : extension == ".mesh"  ? io::read_medit_surface
                                                                          : nullptr;
     if (reader == nullptr) unknown_format(ErrorCode::cannot_read, Stage::read, "read", path, ".off .stl .obj .ply .poly .smesh .mesh");
     return reader(io::read_source(path));
 }
 
-std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::filesystem::path& path, const WriteOptions&) {
+std::vector<Vec3> read_points(const std::filesystem::path& path) {
     const std::string extension = io::lower_case_extension(path);
-    check_lengths(mesh);
-    io::OutputSet files;
+    std::vector<Vec3> (*const reader)(const io::SourceFile&) = extension == ".node"  ? io::read_node_points
+                                                               : extension == ".xyz" ? io::read_xyz_points
+                                                               : extension == ".ply" ? io::read_ply_points
+                                                                                     : nullptr;
+    if (reader == nullptr) unknown_format(ErrorCode::cannot_read, Stage::read, "read points from", path, ".node .xyz .ply");
+    return reader(io::read_source(path));
+}
+
+TetMesh read_mesh(const std::filesystem::path& path) {
+    const std::string extension = io::lower_case_extension(path);
+    if (extension == ".mesh") return io::read_medit_mesh(io::read_source(path));
+    if (extension == ".node" || extension == ".ele") return io::read_tetgen_mesh(path);
+    unknown_format(ErrorCode::cannot_read, Stage::read, "read a mesh from", path, ".mesh .node .ele");
+}
+
+std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
+    const std::string extension = io::lower_case_extension(path);
+    if (options.msh_version != 41 && options.msh_version != 22)
+        throw MeshError(ErrorCode::bad_options, Stage::write, fmt::format("msh_version is 41 or 22, not {}", options.msh_version));
+    check_writable(mesh);
+    io::OutputSet files(options.stop, options.sync);
     if (extension == ".mesh")
         io::write_medit(mesh, files.add(path));
+    else if (extension == ".vtu")
+        io::write_vtu(mesh, files.add(path));
+    else if (extension == ".msh")
+        (options.msh_version == 41 ? io::write_msh41 : io::write_msh22)(mesh, files.add(path));
+    else if (extension == ".node" || extension == ".ele")
+        io::write_tetgen(mesh, path, files);
     else
         unknown_format(ErrorCode::cannot_write, Stage::write, "write", path, ".mesh .vtu .msh .node .ele");
     return files.commit();
+}
+
+void write_plc(const Plc& plc, const std::filesystem::path& path) {
+    if (io::lower_case_extension(path) != ".poly") unknown_format(ErrorCode::cannot_write, Stage::write, "write a complex to", path, ".poly");
+    check_writable(plc);
+    io::OutputSet files;
+    io::write_poly(plc, files.add(path));
+    files.commit();
 }
 
 }  // namespace wellmesh

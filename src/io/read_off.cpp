@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "io/number_parsing.hpp"
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
 

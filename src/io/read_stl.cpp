@@ -84,11 +84,15 @@ public:
 
 private:
     void read_solid(std::int32_t marker) {
+        bool after_loop = false;
         while (true) {
-            const std::string_view token = in_.next();
-            if (is_word(token, "endsolid")) break;
-            if (!is_word(token, "facet")) in_.fail_expected(token, "'facet' or 'endsolid'");
+            // Some writers leave out 'endfacet', and some glue the name to 'endsolid'.
+            std::string_view token = in_.next();
+            if (after_loop && is_word(token, "endfacet")) token = in_.next();
+            if (lower(token.substr(0, 8)) == "endsolid") break;
+            if (!is_word(token, "facet")) in_.fail_expected(token, after_loop ? "'endfacet', 'facet' or 'endsolid'" : "'facet' or 'endsolid'");
             read_facet(marker);
+            after_loop = true;
         }
         in_.skip_line();
     }
@@ -110,7 +114,6 @@ private:
             polygon.push_back(merger_.number_of(point));
             if (plc_.vertex_lines.size() < plc_.vertices.size()) plc_.vertex_lines.push_back(in_.line32());
         }
-        expect_word(in_, "endfacet");
         add_polygon(plc_, std::move(polygon), marker);
     }
 

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// MEDIT .mesh, text: keywords in any order, each with a count and rows of fixed width; 'End' or the end of the file closes it.
+// Keywords that concern neither the mesh nor its surface are passed over by their width; unknown ones are errors, because a file with
+// sections of unknown width cannot be read reliably. Tetrahedra keep the corner order of the file.
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "io/number_parsing.hpp"
+#include "io/plc_building.hpp"
+#include "io/readers.hpp"
+
+namespace wellmesh::io {
+namespace {
+
+template <std::size_t N>
+struct Elements {
+    std::vector<std::array<std::uint32_t, N>> corners;
+    std::vector<std::int32_t> references;
+    std::vector<std::uint32_t> lines;
+    bool given = false;
+    /// Corner numbers (from 0) are checked in the end, because sections come in any order. This is the largest and its line.
+    std::uint32_t largest = 0;
+    std::uint64_t largest_line = 0;
+};
+
+struct PassedOver {
+    std::string_view keyword;
+    std::size_t width;  // numbers a row
+};
+/// With a count and rows. Widths are those of dimension 3.
+constexpr std::array<PassedOver, 28> kPassedOver{{{"Corners", 1},
+                                                  {"RequiredVertices", 1},
+                                                  {"Ridges", 1},
+                                                  {"RequiredEdges", 1},
+                                                  {"RequiredTriangles", 1},
+                                                  {"RequiredQuadrilaterals", 1},
+                                                  {"RequiredTetrahedra", 1},
+                                                  {"ParallelEdges", 1},
+                                                  {"ParallelTriangles", 1},
+                                                  {"ParallelVertices", 1},
+                                                  {"Normals", 3},
+                                                  {"NormalAtVertices", 2},
+                                                  {"NormalAtTriangleVertices", 3},
+                                                  {"NormalAtQuadrilateralVertices", 3},
+                                                  {"Tangents", 3},
+                                                  {"TangentAtVertices", 2},
+                                                  {"TangentAtEdges", 3},
+                                                  {"SubDomainFromMesh", 3},
+                                                  {"SubDomainFromGeom", 3},
+                                                  {"VertexOnGeometricVertex", 2},
+                                                  {"VertexOnGeometricEdge", 3},
+                                                  {"VertexOnGeometricTriangle", 4},
+                                                  {"VertexOnGeometricQuadrilateral", 4},
+                                                  {"EdgeOnGeometricEdge", 2},
+                                                  {"TriangleOnGeometricTriangle", 2},
+                                                  {"TriangleOnGeometricQuadrilateral", 2},
+                                                  {"QuadrilateralOnGeometricTriangle", 2},
+                                                  {"QuadrilateralOnGeometricQuadrilateral", 2}}};
+/// Without a count.
+constexpr std::array<PassedOver, 3> kSingleRows{{{"AngleOfCornerBound", 1}, {"BoundingBox", 6}, {"Identifier", 1}}};
+/// Cells that are no tetrahedra: numbers a row.
+constexpr std::array<PassedOver, 5> kOtherCells{{{"Hexahedra", 9}, {"Hexaedra", 9}, {"Prisms", 7}, {"Pentahedra", 7}, {"Pyramids", 6}}};
+
+class MeditReader {
+public:
+    explicit MeditReader(const SourceFile& source, bool as_surface) : in_(source, {}), as_surface_(as_surface) {}
+
+    void read() {
+        if (const std::string_view word = in_.next(); word != "MeshVersionFormatted") in_.fail_expected(word, "'MeshVersionFormatted'");
+        if (const std::int64_t version = in_.integer("the version of the format"); version < 1 || version > 4)
+            in_.fail(fmt::format("version {} of the format is unknown; known are 1 to 4", version));
+        for (std::string_view word = in_.next(); !word.empty() && word != "End"; word = in_.next()) read_section(word);
+        if (!dimension_known_) in_.fail("the file has no 'Dimension'");
+        if (!vertices_given_) in_.fail("the file has no 'Vertices'");
+        check(edges_);
+        check(triangles_);
+        check(quadrilaterals_);
+        check(tets_);
+    }
+
+    Plc take_surface() {
+        Plc plc = make_surface(in_.source());
+        if (!triangles_.given && !quadrilaterals_.given) in_.fail("the file has neither 'Triangles' nor 'Quadrilaterals': it holds no surface");
+        plc.vertices = std::move(vertices_);
+        plc.vertex_lines = std::move(vertex_lines_);
+        plc.first_number = 1;
+        plc.relative_rounding = precision_.relative_rounding();
+        plc.facets.reserve(triangles_.corners.size() + quadrilaterals_.corners.size());
+        add_facets(plc, triangles_);
+        add_facets(plc, quadrilaterals_);
+        normalise_zeros(plc.vertices);
+        return plc;
+    }
+
+    TetMesh take_mesh() {
+        if (!tets_.given) in_.fail("the file has no 'Tetrahedra'");
+        if (!quadrilaterals_.corners.empty()) in_.fail("the file has Quadrilaterals; a tetrahedral mesh has triangles alone");
+        TetMesh mesh;
+        mesh.vertices = std::move(vertices_);
+        mesh.tets = std::move(tets_.corners);
+        mesh.tet_regions = std::move(tets_.references);
+        mesh.subfaces = std::move(triangles_.corners);
+        mesh.subface_facets = triangles_.references;
+        mesh.subface_markers = std::move(triangles_.references);
+        mesh.subsegments = std::move(edges_.corners);
+        mesh.subsegment_segments = std::move(edges_.references);
+        return mesh;
+    }
+
+private:
+    void read_section(std::string_view word) {
+        if (word == "Dimension") {
+            if (const std::int64_t dimension = in_.integer("the dimension"); dimension != 3)
+                in_.fail(fmt::format("the dimension is {}, only 3 is supported", dimension));
+            dimension_known_ = true;
+            return;
+        }
+        if (!dimension_known_) in_.fail_expected(word, "'Dimension' before the first section");
+        if (word == "Vertices") return read_vertices();
+        if (word == "Edges") return read_elements(edges_, word, !as_surface_);
+        if (word == "Triangles") return read_elements(triangles_, word, true);
+        if (word == "Quadrilaterals") return read_elements(quadrilaterals_, word, true);
+        if (word == "Tetrahedra") return read_elements(tets_, word, !as_surface_);
+        for (const PassedOver& section : kPassedOver)
+            if (section.keyword == word) return pass_rows(in_.count("the number of entries", 2 * section.width), section.width);
+        for (const PassedOver& section : kSingleRows)
+            if (section.keyword == word) return pass_rows(1, section.width);
+        for (const PassedOver& section : kOtherCells)
+            if (section.keyword == word) return read_other_cells(section);
+        in_.fail_expected(word, "a MEDIT keyword or 'End'");
+    }
+
+    void read_vertices() {
+        if (std::exchange(vertices_given_, true)) in_.fail("the section 'Vertices' is given twice");
+        constexpr std::size_t kLeastVertexBytes = 8;  // "0 0 0 0\n"
+        const std::size_t count = in_.count("the number of vertices", kLeastVertexBytes);
+        if (count > kMostVertices) in_.fail("more vertices than 32-bit numbers hold");
+        vertices_.reserve(count);
+        if (as_surface_) vertex_lines_.reserve(count);
+        for (std::size_t v = 0; v < count; ++v) {
+            vertices_.push_back(read_coordinates());
+            if (as_surface_) vertex_lines_.push_back(in_.line32());
+            (void)in_.integer32("a reference");
+        }
+    }
+
+    Vec3 read_coordinates() {
+        // The precision of a text matters to a surface that is to be meshed; a mesh is taken as it is.
+        return as_surface_ ? read_point(in_, precision_) : read_seed(in_);
+    }
+
+    template <std::size_t N>
+    void read_elements(Elements<N>& elements, std::string_view keyword, bool keep) {
+        if (std::exchange(elements.given, true)) in_.fail(fmt::format("the section '{}' is given twice", keyword));
+        const std::size_t count = in_.count("the number of elements", 2 * (N + 1));
+        if (!keep) return pass_rows(count, N + 1);
+        elements.corners.reserve(count);
+        elements.references.reserve(count);
+        if (as_surface_) elements.lines.reserve(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::array<std::uint32_t, N> corners{};
+            for (std::uint32_t& corner : corners) {
+                const std::int64_t number = in_.integer("a vertex number");
+                if (number < 1 || number > static_cast<std::int64_t>(kMostVertices)) in_.fail(fmt::format("vertex {} does not exist; numbers count from 1", number));
+                corner = static_cast<std::uint32_t>(number - 1);
+                if (corner >= elements.largest) {
+                    elements.largest = corner;
+                    elements.largest_line = in_.line();
+                }
+            }
+            elements.corners.push_back(corners);
+            if (as_surface_) elements.lines.push_back(in_.line32());
+            elements.references.push_back(in_.integer32("a reference"));
+        }
+    }
+
+    template <std::size_t N>
+    void check(const Elements<N>& elements) const {
+        if (!elements.corners.empty() && elements.largest >= vertices_.size())
+            fail_at_line(in_.source(), elements.largest_line,
+                         fmt::format("vertex {} does not exist; the file has {} vertices", std::uint64_t{elements.largest} + 1, vertices_.size()));
+    }
+
+    void read_other_cells(const PassedOver& cell) {
+        const std::size_t count = in_.count("the number of elements", 2 * cell.width);
+        if (count > 0 && !as_surface_) in_.fail(fmt::format("the file has {} {}; only tetrahedra can be read", count, cell.keyword));
+        pass_rows(count, cell.width);
+    }
+
+    void pass_rows(std::size_t rows, std::size_t width) {
+        for (std::size_t i = 0; i < rows * width; ++i) {
+            const std::string_view token = in_.next();
+            // Enough to notice a keyword where the count promises more rows; the values do not matter.
+            if (token.empty() || token.find_first_of("0123456789") == std::string_view::npos) in_.fail_expected(token, "a number");
+        }
+    }
+
+    template <std::size_t N>
+    static void add_facets(Plc& plc, const Elements<N>& elements) {
+        for (std::size_t i = 0; i < elements.corners.size(); ++i) {
+            add_polygon(plc, {elements.corners[i].begin(), elements.corners[i].end()}, elements.references[i]);
+            plc.facet_lines.push_back(elements.lines[i]);
+        }
+    }
+
+    TextScanner in_;
+    TextPrecision precision_;
+    bool as_surface_, dimension_known_ = false, vertices_given_ = false;
+    std::vector<Vec3> vertices_;
+    std::vector<std::uint32_t> vertex_lines_;
+    Elements<2> edges_;
+    Elements<3> triangles_;
+    Elements<4> quadrilaterals_, tets_;
+};
+
+}  // namespace
+
+Plc read_medit_surface(const SourceFile& source) {
+    MeditReader reader(source, true);
+    reader.read();
+    return reader.take_surface();
+}
+
+TetMesh read_medit_mesh(const SourceFile& source) {
+    MeditReader reader(source, false);
+    reader.read();
+    return reader.take_mesh();
+}
+
+}  // namespace wellmesh::io

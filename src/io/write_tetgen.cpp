@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// TetGen's .node, .ele (region as the attribute), .face and .edge (boundary markers), counted from 1. All four are always written, so
+// that no file of an older mesh stays beside. The marker of a face is the input's marker of its facet; of an input without markers
+// (all zero), the facet's number. That of an edge is the segment's number.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "io/writers.hpp"
+
+namespace wellmesh::io {
+namespace {
+
+template <std::size_t N>
+void write_rows(OutputFile& out, std::string_view columns, const std::vector<std::array<std::uint32_t, N>>& elements,
+                const std::vector<std::int32_t>& references) {
+    out.integer(static_cast<std::int64_t>(elements.size()));
+    out.text(columns);
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        out.integer(static_cast<std::int64_t>(i) + 1);
+        for (const std::uint32_t v : elements[i]) {
+            out.character(' ');
+            out.integer(std::int64_t{v} + 1);
+        }
+        out.character(' ');
+        out.integer(references[i]);
+        out.character('\n');
+    }
+}
+
+}  // namespace
+
+void write_tetgen(const TetMesh& mesh, const std::filesystem::path& path, OutputSet& files) {
+    const auto add = [&](const char* extension) -> OutputFile& { return files.add(std::filesystem::path(path).replace_extension(extension)); };
+    OutputFile& nodes = add(".node");
+    nodes.integer(static_cast<std::int64_t>(mesh.vertices.size()));
+    nodes.text(" 3 0 0\n");
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        nodes.integer(static_cast<std::int64_t>(v) + 1);
+        for (const double coordinate : {mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z}) {
+            nodes.character(' ');
+            nodes.real(coordinate);
+        }
+        nodes.character('\n');
+    }
+    write_rows(add(".ele"), " 4 1\n", mesh.tets, mesh.tet_regions);
+    const bool marked = std::any_of(mesh.subface_markers.begin(), mesh.subface_markers.end(), [](std::int32_t marker) { return marker != 0; });
+    write_rows(add(".face"), " 1\n", mesh.subfaces, marked ? mesh.subface_markers : mesh.subface_facets);
+    write_rows(add(".edge"), " 1\n", mesh.subsegments, mesh.subsegment_segments);
+}
+
+}  // namespace wellmesh::io
