@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "validation/box_tree.hpp"
+
+#include <array>
+#include <numeric>
+
+namespace wellmesh {
+
+BoxTree::BoxTree(std::span<const Box> boxes) : boxes_(boxes), order_(boxes.size()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    for (const Box& b : boxes) bounds_.add(b);
+    if (!order_.empty()) {
+        nodes_.reserve(order_.size());
+        build(0, static_cast<std::uint32_t>(order_.size()));
+    }
+}
+
+std::uint32_t BoxTree::build(std::uint32_t begin, std::uint32_t end) {
+    constexpr std::uint32_t kLeafSize = 4;
+    const auto id = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back({});
+    Box box;
+    for (std::uint32_t i = begin; i < end; ++i) box.add(boxes_[order_[i]]);
+    nodes_[id].box = box;
+    nodes_[id].begin = begin;
+    nodes_[id].end = end;
+    if (end - begin <= kLeafSize) return id;
+    const std::array<double, 3> extent{box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z};
+    const auto axis = static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
+    const auto centre = [&](std::uint32_t i) {
+        const Box& b = boxes_[i];
+        return axis == 0 ? b.low.x + b.high.x : axis == 1 ? b.low.y + b.high.y : b.low.z + b.high.z;
+    };
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](std::uint32_t a, std::uint32_t b) {
+        const double ca = centre(a), cb = centre(b);
+        return ca != cb ? ca < cb : a < b;
+    });
+    const std::uint32_t left = build(begin, middle);
+    const std::uint32_t right = build(middle, end);
+    nodes_[id].left = left;
+    nodes_[id].right = right;
+    return id;
+}
+
+}  // namespace wellmesh

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bounding boxes in a balanced binary tree. Answers are candidates; exact tests decide.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "wellmesh/vec3.hpp"
+
+namespace wellmesh {
+
+struct Box {
+    Vec3 low{1, 1, 1}, high{0, 0, 0};  ///< empty until a point is added
+    [[nodiscard]] bool empty() const { return low.x > high.x; }
+    void add(const Vec3& p) {
+        if (empty()) {
+            low = high = p;
+            return;
+        }
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    void add(const Box& b) {
+        if (b.empty()) return;
+        add(b.low);
+        add(b.high);
+    }
+    [[nodiscard]] Box grown(double by) const { return {{low.x - by, low.y - by, low.z - by}, {high.x + by, high.y + by, high.z + by}}; }
+    [[nodiscard]] bool meets(const Box& b) const {
+        return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y && low.z <= b.high.z && b.low.z <= high.z;
+    }
+};
+
+class BoxTree {
+public:
+    explicit BoxTree(std::span<const Box> boxes);
+
+    [[nodiscard]] const Box& bounds() const { return bounds_; }
+
+    /// Calls visit(index) for every box for which `meets(box)` holds; `meets` must hold for every box that contains one for which it holds.
+    template <class Meets, class Visit>
+    void query(Meets&& meets, Visit&& visit) const {
+        if (order_.empty()) return;
+        std::vector<std::uint32_t> stack{0};
+        while (!stack.empty()) {
+            const Node& node = nodes_[stack.back()];
+            stack.pop_back();
+            if (!meets(node.box)) continue;
+            if (node.left != 0) {
+                stack.push_back(node.right);
+                stack.push_back(node.left);
+                continue;
+            }
+            for (std::uint32_t i = node.begin; i < node.end; ++i)
+                if (meets(boxes_[order_[i]])) visit(order_[i]);
+        }
+    }
+
+private:
+    struct Node {
+        Box box;
+        std::uint32_t begin = 0, end = 0;   ///< into order_
+        std::uint32_t left = 0, right = 0;  ///< 0: leaf
+    };
+    std::uint32_t build(std::uint32_t begin, std::uint32_t end);
+
+    std::span<const Box> boxes_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;
+    Box bounds_;
+};
+
+}  // namespace wellmesh

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stage validate: runs the checks in order and, when none found an error, hands out the complex. Each check goes on as far as it can
+// after errors, so that one run lists everything; what would only follow from earlier errors (cells of a complex that intersects
+// itself) is not asked.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/check.hpp"
+#include "core/vec3_math.hpp"
+#include "validation/facet_planarity.hpp"
+#include "validation/fill_cells.hpp"
+#include "validation/find_duplicates.hpp"
+#include "validation/merge_coplanar.hpp"
+#include "validation/valid_plc.hpp"
+
+namespace wellmesh {
+
+/// The only maker of ValidPlc.
+struct ValidPlcBuilder {
+    ValidPlcBuilder(const Plc& stated, const MeshOptions& options) : plc(stated), report(stated) {
+        rounding.relative = std::max(0.0, stated.relative_rounding);
+        rounding.override_with = options.coplanar_tolerance;
+    }
+
+    void run();
+    void find_segments();
+    void find_facets();
+    void orient_facet(std::uint32_t group, ValidFacet& facet) const;
+    void attach_cells(const CellMap& map);
+    void keep_isolated_vertices(const LineQuery& lines, const CellMap& map);
+    void compress_vertices();
+    void summarise();
+
+    const Plc& plc;
+    Report report;
+    Rounding rounding;
+    CleanInput input;
+    Soup soup;
+    EdgeTable edges;
+    FacetGroups groups;
+    std::vector<std::uint32_t> segment_of_edge;
+    ValidPlc out;
+};
+
+void ValidPlcBuilder::run() {
+    if (plc.vertices.empty() || (plc.facets.empty() && plc.segments.empty())) {
+        report.add(DefectKind::empty_input, Severity::error, {}, plc.vertices.empty() ? "the input has no vertices" : "the input has no facets");
+        return;
+    }
+    input = clean_input(plc, report);
+    for (const Vec3& p : input.points)
+        rounding.largest_coordinate = std::max({rounding.largest_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    soup = make_soup(input, plc, rounding, report);
+    edges = make_edge_table(soup.triangles);
+    groups = merge_coplanar(input, soup, edges, plc, rounding);
+    find_segments();
+    find_facets();
+    if (report.has_errors()) return;
+    const LineQuery lines(input.points, soup.triangles);
+    const CellMap map = find_cells(input.points, soup.triangles, edges, lines);
+    out.cells = fill_cells(input, soup, map, lines, report);
+    attach_cells(map);
+    keep_isolated_vertices(lines, map);
+    compress_vertices();
+}
+
+void ValidPlcBuilder::find_segments() {
+    constexpr auto kNone = static_cast<std::uint32_t>(-1);
+    segment_of_edge.assign(edges.keys.size(), kNone);
+    const auto add = [&](EdgeKey key) {
+        ValidSegment segment;
+        segment.ends = edge_ends(key);
+        if (const auto hard = soup.hard_edges.find(key); hard != soup.hard_edges.end()) segment.marker = hard->second;
+        out.segments.push_back(std::move(segment));
+    };
+    for (std::size_t e = 0; e < edges.keys.size(); ++e) {
+        if (!groups.is_segment[e]) continue;
+        segment_of_edge[e] = static_cast<std::uint32_t>(out.segments.size());
+        add(edges.keys[e]);
+        auto& facets = out.segments.back().facets;
+        for (const std::uint32_t corner : edges.around(e)) facets.emplace_back(groups.group_of[corner / 3]);
+        std::sort(facets.begin(), facets.end());
+        facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+    }
+    for (const auto& wire : soup.wires) add(edge_key(wire[0], wire[1]));
+}
+
+void ValidPlcBuilder::find_facets() {
+    for (std::uint32_t g = 0; g < groups.planes.size(); ++g) {
+        ValidFacet facet;
+        const FittedPlane& plane = groups.planes[g];
+        facet.origin = plane.origin;
+        facet.normal = plane.normal;
+        facet.axis_u = plane.axis_u;
+        facet.axis_v = plane.axis_v;
+        // vertices are as good as their last bit, however well a plane fits them
+        facet.tolerance = std::max(plane.residual, rounding.ulps(1));
+        facet.vertices = groups.vertices[g];
+        facet.source_facet = static_cast<std::uint32_t>(plc.facets.size());
+        for (const std::uint32_t t : groups.triangles[g]) {
+            facet.source_facet = std::min(facet.source_facet, input.facets[soup.triangles[t].facet].source);
+            for (std::uint32_t s = 0; s < 3; ++s) {
+                const std::uint32_t edge = edges.edge_of[3 * t + s];
+                if (groups.is_segment[edge]) facet.segments.emplace_back(segment_of_edge[edge]);
+            }
+        }
+        std::sort(facet.segments.begin(), facet.segments.end());
+        facet.segments.erase(std::unique(facet.segments.begin(), facet.segments.end()), facet.segments.end());
+        facet.marker = plc.facets[facet.source_facet].marker;
+        orient_facet(g, facet);
+        out.coplanar_tolerance = std::max(out.coplanar_tolerance, facet.tolerance);
+        out.facets.push_back(std::move(facet));
+    }
+}
+
+void ValidPlcBuilder::orient_facet(std::uint32_t group, ValidFacet& facet) const {
+    const PlaneProjection project(facet.normal);
+    for (const std::uint32_t t : groups.triangles[group]) {
+        std::array<VertexId, 3> v = soup.triangles[t].v;
+        const auto at = [&](std::size_t i) { return project(input.points[v[i].index()]); };
+        if (orient2d(at(0), at(1), at(2)) == Sign::negative) std::swap(v[1], v[2]);
+        facet.triangles.push_back(v);
+    }
+}
+
+void ValidPlcBuilder::attach_cells(const CellMap& map) {
+    for (std::uint32_t g = 0; g < groups.planes.size(); ++g) {
+        const std::uint32_t t = groups.triangles[g].front();
+        const bool turned = out.facets[g].triangles.front() != soup.triangles[t].v;
+        out.facets[g].cells = {CellId{map.cell_of_side[2 * t + (turned ? 1 : 0)]}, CellId{map.cell_of_side[2 * t + (turned ? 0 : 1)]}};
+    }
+}
+
+/// Vertices that neither a facet nor a segment uses: volume points of a .poly, leftovers of a surface file.
+void ValidPlcBuilder::keep_isolated_vertices(const LineQuery& lines, const CellMap& map) {
+    std::vector<char> used(input.points.size(), 0), stated(input.points.size(), 0);
+    for (const ValidFacet& f : out.facets)
+        for (const VertexId v : f.vertices) used[v.index()] = 1;
+    for (const ValidSegment& s : out.segments) used[s.ends[0].index()] = used[s.ends[1].index()] = 1;
+    for (const VertexId v : input.lone_vertices) stated[v.index()] = 1;
+    std::vector<ElementRef> dropped;
+    for (std::size_t v = 0; v < input.points.size(); ++v) {
+        if (used[v]) continue;
+        bool keep = plc.fill == FillRule::bounded_cells || stated[v];
+        if (keep) {
+            const auto place = lines.locate(input.points[v]);
+            keep = place.sees && out.cells[map.cell_of_side[*place.sees]].filled;
+        }
+        if (keep)
+            out.isolated_vertices.emplace_back(v);
+        else
+            dropped.push_back(report.vertex(input.source_vertex[v]));
+    }
+    if (!dropped.empty()) {
+        const std::size_t n = dropped.size();
+        report.add(DefectKind::isolated_vertex, Severity::note, std::move(dropped),
+                   fmt::format("{} vertices that no facet uses were dropped{}", n, plc.fill == FillRule::bounded_cells ? ": they lie outside of the filled cells" : ""),
+                   static_cast<double>(n));
+    }
+}
+
+void ValidPlcBuilder::compress_vertices() {
+    std::vector<VertexId> number(input.points.size());
+    std::vector<char> used(input.points.size(), 0);
+    const auto use = [&](VertexId v) { used[v.index()] = 1; };
+    for (const ValidFacet& f : out.facets) std::for_each(f.vertices.begin(), f.vertices.end(), use);
+    for (const ValidSegment& s : out.segments) std::for_each(s.ends.begin(), s.ends.end(), use);
+    std::for_each(out.isolated_vertices.begin(), out.isolated_vertices.end(), use);
+    for (std::size_t v = 0; v < used.size(); ++v) {
+        if (!used[v]) continue;
+        number[v] = VertexId{out.vertices.size()};
+        out.vertices.push_back(input.points[v]);
+        out.source_vertex.push_back(input.source_vertex[v]);
+        if (plc.vertex_markers.size() == plc.vertices.size()) out.vertex_markers.push_back(plc.vertex_markers[input.source_vertex[v]]);
+    }
+    const auto renumber = [&](VertexId& v) { v = number[v.index()]; };  // keeps the order, so sorted lists stay sorted
+    for (ValidFacet& f : out.facets) {
+        std::for_each(f.vertices.begin(), f.vertices.end(), renumber);
+        for (auto& t : f.triangles) std::for_each(t.begin(), t.end(), renumber);
+    }
+    for (ValidSegment& s : out.segments) std::for_each(s.ends.begin(), s.ends.end(), renumber);
+    std::for_each(out.isolated_vertices.begin(), out.isolated_vertices.end(), renumber);
+}
+
+void ValidPlcBuilder::summarise() {
+    Diagnosis& d = out.diagnosis;
+    d.defects = report.take();
+    for (const ValidCell& c : out.cells) d.cells.push_back({c.region, c.volume, c.inside, c.filled});
+    d.vertices = out.vertices.empty() ? input.points.size() : out.vertices.size();
+    d.segments = out.segments.size();
+    d.facets = out.facets.size();
+    d.coplanar_tolerance = out.coplanar_tolerance;
+}
+
+ValidPlc validate(const Plc& plc, const MeshOptions& options) {
+    ValidPlcBuilder builder(plc, options);
+    builder.run();
+    builder.summarise();
+    throw_if_invalid(builder.out.diagnosis, plc.source_name);
+    return std::move(builder.out);
+}
+
+Diagnosis diagnose(const Plc& plc, const MeshOptions& options) {
+    ValidPlcBuilder builder(plc, options);
+    builder.run();
+    builder.summarise();
+    return std::move(builder.out.diagnosis);
+}
+
+}  // namespace wellmesh
