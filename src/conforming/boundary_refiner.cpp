@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conforming/boundary_refiner.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "conforming/place_point.hpp"
+#include "core/check.hpp"
+#include "core/rng.hpp"
+#include "core/vec3_math.hpp"
+
+namespace wellmesh {
+namespace {
+
+/// Splits avoid the exact centre: on symmetric input midpoints make cospherical structures that are split for ever.
+constexpr double kJitter = 0.05;
+/// Radius of a picking region relative to the circumradius (half the length of a subsegment) [LiTeng01, 2.3; docs/theory].
+constexpr double kPickingRadius = 0.3;
+
+}  // namespace
+
+// ------------------------------------------------------------------------------------------------ queues
+
+void BoundaryRefiner::enqueue_encroached(const std::vector<TetId>& tets) {
+    const TetStore& store = mesh_.tets();
+    for (const TetId t : tets) {
+        if (!mesh_.has_labels(t)) continue;
+        const TetLabels& l = mesh_.labels(t);
+        const auto& c = store.corners(t);
+        for (unsigned e = 0; e < 6; ++e) {
+            if (!l.segments[e].valid()) continue;
+            const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
+            for (const unsigned k : {unsigned{kEdgeCorners[5 - e][0]}, unsigned{kEdgeCorners[5 - e][1]}})
+                if (c[k] != kInfiniteVertex && side_of_diametral_sphere(mesh_.point(a), mesh_.point(b), mesh_.point(c[k])) == Sign::positive) {
+                    segments_.push_back({{a, b, l.segments[e]}, c[k]});
+                    break;
+                }
+        }
+        for (unsigned f = 0; f < 4; ++f) {
+            if (!l.facets[f].valid() || c[f] == kInfiniteVertex) continue;
+            const auto fc = store.face_corners(TetFace{t, f});
+            if (side_of_equatorial_sphere(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), mesh_.point(c[f])) == Sign::positive)
+                faces_.push_back({{fc, l.facets[f]}, c[f]});
+        }
+    }
+}
+
+void BoundaryRefiner::enqueue_all_encroached() {
+    std::vector<TetId> labelled;
+    for (std::size_t i = 0; i < mesh_.tets().slots(); ++i)
+        if (mesh_.tets().is_live(TetId{i}) && mesh_.has_labels(TetId{i})) labelled.push_back(TetId{i});
+    enqueue_encroached(labelled);
+}
+
+void BoundaryRefiner::find_encroached(const Cavity& cavity, const Placement& where, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const {
+    segments.clear();
+    faces.clear();
+    const TetStore& store = mesh_.tets();
+    const Vec3& p = cavity.point;
+    const auto on_carrier = [&](FacetId f) {
+        if (where.carrier == CarrierKind::facet) return f.value() == where.carrier_id;
+        if (where.carrier != CarrierKind::segment) return false;
+        const auto& facets = mesh_.plc().segments[where.carrier_id].facets;
+        return std::find(facets.begin(), facets.end(), f) != facets.end();
+    };
+    for (const TetId t : cavity.tets) {
+        if (!mesh_.has_labels(t)) continue;
+        const TetLabels& l = mesh_.labels(t);
+        const auto& c = store.corners(t);
+        for (unsigned e = 0; e < 6; ++e) {
+            if (!l.segments[e].valid()) continue;
+            const VertexId a = std::min(c[kEdgeCorners[e][0]], c[kEdgeCorners[e][1]]), b = std::max(c[kEdgeCorners[e][0]], c[kEdgeCorners[e][1]]);
+            if (where.carrier == CarrierKind::segment && l.segments[e].value() == where.carrier_id) continue;
+            if (std::any_of(segments.begin(), segments.end(), [&](const Subsegment& s) { return s.a == a && s.b == b; })) continue;
+            if (side_of_diametral_sphere(mesh_.point(a), mesh_.point(b), p) == Sign::positive) segments.push_back({a, b, l.segments[e]});
+        }
+        for (unsigned f = 0; f < 4; ++f) {
+            if (!l.facets[f].valid() || on_carrier(l.facets[f])) continue;
+            const TetId other = store.across(t, f).tet();
+            if (t > other && mesh_.triangulation().in_last_cavity(other)) continue;  // seen from there
+            const auto fc = store.face_corners(TetFace{t, f});
+            if (side_of_equatorial_sphere(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), p) == Sign::positive)
+                faces.push_back({fc, l.facets[f]});
+        }
+    }
+}
+
+void BoundaryRefiner::inserted(VertexId v) {
+    // e_v, the shortest edge at the new vertex: its star is at hand.
+    double shortest = 1e300;
+    for (const TetId t : mesh_.triangulation().new_tets())
+        for (const VertexId w : mesh_.tets().corners(t))
+            if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
+    mesh_.info(v).insertion_length = std::sqrt(shortest);
+    enqueue_encroached(mesh_.triangulation().new_tets());
+    if (on_insert) on_insert(v);
+}
+
+// ------------------------------------------------------------------------------------------------ splits
+
+BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const SplitRequest& request) {
+    const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b);
+    const std::uint64_t key = mix64(seed_, mix64(std::min(s.a, s.b).value(), std::max(s.a, s.b).value()));
+    const Placement where = Placement::on_segment(s);
+    const Vec3 middle = 0.5 * (a + b);
+    Triangulation& tri = mesh_.triangulation();
+    const double jitter = kJitter * (2 * unit_double(mix64(key, 0)) - 1);
+    const auto found = [&](unsigned k) {
+        const double at = k == 0 ? jitter : kPickingRadius * picking_point(1, key, k).x;
+        const Vec3 p = project_to_segment(mesh_.plc(), s.segment, middle + (at / 2) * (b - a));
+        return p != a && p != b && tri.find_conflict_cavity(p, tri.tet_of(s.a), cavity_);
+    };
+    unsigned chosen = 0;
+    if (judge)
+        for (unsigned k = 0; k < std::max(candidates / 4, 1U); ++k)
+            if (found(k) && judge(cavity_, where)) {
+                chosen = k;
+                break;
+            }
+    if (!found(chosen))
+        throw MeshError(ErrorCode::budget_exhausted, guard_.stage(),
+                        fmt::format("segment {} can't be split any further: its pieces are as short as the rounding of its coordinates, near ({}, {}, {})",
+                                    s.segment.value() + 1, middle.x, middle.y, middle.z),
+                        {{EntityKind::segment, s.segment.value() + 1, middle}});
+    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::segment, request.reason, s.segment.value(), request.parent, 0});
+    for (const Subsegment& half : {Subsegment{s.a, v, s.segment}, Subsegment{v, s.b, s.segment}})
+        if (!mesh_.find_subsegment(half).valid()) segments_.push_back({half, VertexId{}});
+    inserted(v);
+    return SplitOutcome::inserted;
+}
+
+BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const SplitRequest& request) {
+    const TetFace face = mesh_.find_subface(s);
+    if (!face.valid()) return SplitOutcome::gone;
+    const Vec3 &a = mesh_.point(s.corners[0]), &b = mesh_.point(s.corners[1]), &c = mesh_.point(s.corners[2]);
+    double radius = 0;
+    const Vec3 centre = circumcentre(a, b, c, &radius);
+    std::array<VertexId, 3> sorted = s.corners;
+    std::sort(sorted.begin(), sorted.end());
+    const std::uint64_t key = mix64(seed_, mix64(sorted[0].value(), mix64(sorted[1].value(), sorted[2].value())));
+    const ValidFacet& facet = mesh_.plc().facets[s.facet.index()];
+    const Placement where = Placement::on_facet(s.facet);
+    Triangulation& tri = mesh_.triangulation();
+    const auto found = [&](unsigned k) {
+        const Vec3 unit = picking_point(2, key, k == 0 ? 1 : k);
+        const double r = (k == 0 ? kJitter : kPickingRadius) * radius;
+        const Vec3 p = project_to_facet(facet, centre + (r * unit.x) * facet.axis_u + (r * unit.y) * facet.axis_v);
+        return tri.find_conflict_cavity(p, face.tet(), cavity_);
+    };
+    // The centre decides whether a subsegment has to be split instead.
+    if (!found(0)) return SplitOutcome::gone;
+    find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+    if (!encroached_segments_.empty()) {
+        const std::vector<Subsegment> targets = encroached_segments_;
+        for (const Subsegment& target : targets)
+            if (mesh_.find_subsegment(target).valid()) split(target, request);
+        return SplitOutcome::deferred;
+    }
+    unsigned chosen = 0;
+    if (judge && !judge(cavity_, where))
+        for (unsigned k = 1; k < std::max(candidates / 2, 1U); ++k) {
+            if (!found(k)) continue;
+            find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+            if (encroached_segments_.empty() && judge(cavity_, where)) {
+                chosen = k;
+                break;
+            }
+        }
+    if (!found(chosen)) return SplitOutcome::gone;
+    if (!mesh_.holds_carrier(cavity_, where)) {
+        // Rounding or a facet that is not Gabriel yet put the centre outside the facet: the middle of the triangle never is.
+        const Vec3 p = project_to_facet(facet, a + (1.0 / 3) * ((b - a) + (c - a)));
+        if (!tri.find_conflict_cavity(p, face.tet(), cavity_)) return SplitOutcome::gone;
+    }
+    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::facet, request.reason, s.facet.value(), request.parent, 0});
+    inserted(v);
+    return SplitOutcome::inserted;
+}
+
+void BoundaryRefiner::poll_or_throw() {
+    switch (guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting())) {
+        case RunGuard::Verdict::go_on: return;
+        case RunGuard::Verdict::cancelled: throw MeshError(ErrorCode::cancelled, guard_.stage(), "cancelled before the mesh conformed to its input");
+        case RunGuard::Verdict::out_of_time: throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), "the time limit passed before the mesh conformed to its input");
+        case RunGuard::Verdict::out_of_vertices:
+            throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("{} vertices were not enough for the mesh to conform to its input", mesh_.vertex_count()));
+    }
+}
+
+bool BoundaryRefiner::step() {
+    if (!segments_.empty()) {
+        const WaitingSegment w = segments_.front();
+        segments_.pop_front();
+        const TetId t = mesh_.triangulation().find_edge(w.s.a, w.s.b);
+        if (!w.encroacher.valid() && t.valid()) {
+            // A piece that was missing has appeared: label it, and see whether it is encroached.
+            mesh_.label_edge(w.s.a, w.s.b, w.s.segment);
+            std::vector<TetId> star;
+            mesh_.triangulation().find_star(w.s.a, star);
+            enqueue_encroached(star);
+            return true;
+        }
+        if (w.encroacher.valid() && !mesh_.find_subsegment(w.s).valid()) return true;  // split in the meantime
+        poll_or_throw();
+        split(w.s, {w.encroacher.valid() ? InsertionReason::encroachment : InsertionReason::recovery, w.encroacher});
+        return true;
+    }
+    if (mesh_.has_broken()) {
+        repair_broken();
+        return true;
+    }
+    if (!faces_.empty()) {
+        const WaitingFace w = faces_.front();
+        faces_.pop_front();
+        poll_or_throw();
+        if (split(w.s, {InsertionReason::encroachment, w.encroacher}) == SplitOutcome::deferred) faces_.push_back(w);
+        return true;
+    }
+    return false;
+}
+
+bool BoundaryRefiner::conform() {
+    while (step()) {}
+    return true;
+}
+
+void BoundaryRefiner::drain_segments() {
+    while (!segments_.empty()) step();
+}
+
+}  // namespace wellmesh

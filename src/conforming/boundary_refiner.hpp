@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Splits encroached subsegments, then encroached subfaces, until every segment is a chain of edges with empty diametral spheres and
+// every facet a union of faces with empty equatorial spheres (the Gabriel property) [Shewchuk98].
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "conforming/conforming_mesh.hpp"
+#include "core/run_guard.hpp"
+
+namespace wellmesh {
+
+/// A point for a split. `fraction` of the picking region: 0 is its centre.
+struct SplitRequest {
+    InsertionReason reason = InsertionReason::encroachment;
+    VertexId parent{};  ///< the encroaching vertex, or the one responsible for the tetrahedron whose centre encroaches
+};
+
+class BoundaryRefiner {
+public:
+    BoundaryRefiner(ConformingMesh& mesh, RunGuard& guard, std::uint64_t seed) : mesh_(mesh), guard_(guard), seed_(seed) {}
+
+    /// Called after every insertion, with the new vertex; the triangulation's new_tets() are still its star.
+    std::function<void(VertexId)> on_insert{};
+    /// Called after recovery has found all cells anew (tetrahedra may have changed cells).
+    std::function<void()> on_repair{};
+    /// Chooses among candidate points of a picking region (best first); returns the index of the one to use. Empty: always 0.
+    using Judge = std::function<bool(const Cavity&, const Placement&)>;  ///< does the star of this point hold no new small sliver?
+    Judge judge{};
+    unsigned candidates = 1;
+
+    /// Makes every segment a chain of edges and every facet a union of faces, then finds the cell of every tetrahedron.
+    /// @throws MeshError{budget_exhausted, cancelled, unsupported_acute}
+    void recover_all();
+    /// Splits until nothing is encroached; recovers what splits destroyed. @return false if the guard stopped it between two splits.
+    bool conform();
+    /// Splits at most one subsegment or subface. @return false if none is waiting.
+    bool step();
+    [[nodiscard]] bool idle() const { return segments_.empty() && faces_.empty() && !mesh_.has_broken(); }
+    [[nodiscard]] std::size_t waiting() const { return segments_.size() + faces_.size(); }
+
+    /// Looks for encroached subsegments and subfaces among the new tetrahedra.
+    void enqueue_encroached(const std::vector<TetId>& tets);
+    void enqueue_all_encroached();
+
+    /// Subsegments and subfaces that cavity.point would encroach, except on its own carrier.
+    void find_encroached(const Cavity& cavity, const Placement& where, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
+
+    enum class SplitOutcome { inserted, deferred, gone };
+    SplitOutcome split(const Subsegment& s, const SplitRequest& request);
+    /// Deferred: a subsegment had to be split instead.
+    SplitOutcome split(const Subface& s, const SplitRequest& request);
+
+    [[nodiscard]] std::uint64_t seed() const { return seed_; }
+
+private:
+    struct WaitingSegment { Subsegment s; VertexId encroacher; };
+    struct WaitingFace { Subface s; VertexId encroacher; };
+
+    void recover_segments();
+    bool recover_facet(FacetId f);
+    void repair_broken();
+    void drain_segments();
+    void inserted(VertexId v);
+    void poll_or_throw();
+    void queue_chain(SegmentId s);
+    void try_insert_on_facet(FacetId f, const Vec3& wanted, TetId near, const SplitRequest& request);
+
+    ConformingMesh& mesh_;
+    RunGuard& guard_;
+    std::uint64_t seed_;
+    std::deque<WaitingSegment> segments_;
+    std::deque<WaitingFace> faces_;
+    Cavity cavity_;
+    std::vector<Subsegment> encroached_segments_;
+    std::vector<Subface> encroached_faces_;
+    bool conforming_ = false;  // has recover_all finished once?
+};
+
+/// Finds the cell of every tetrahedron by flooding from the labelled faces. @throws MeshError{internal_invariant} if the surface leaks.
+void classify_cells(ConformingMesh& mesh);
+
+/// Point k (1, 2, ...) of a low-discrepancy sequence in the unit ball, disk (z = 0) or interval (y = z = 0); point 0 is the centre.
+/// No trigonometry: the same on every platform.
+[[nodiscard]] Vec3 picking_point(unsigned dimension, std::uint64_t key, unsigned k);
+
+}  // namespace wellmesh

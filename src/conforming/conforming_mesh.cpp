@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conforming/conforming_mesh.hpp"
+
+#include <algorithm>
+
+#include "core/check.hpp"
+#include "core/vec3_math.hpp"
+#include "wellmesh/error.hpp"
+
+namespace wellmesh {
+
+void bounding_box(const std::vector<Vec3>& points, Vec3& lo, Vec3& hi) {
+    lo = hi = points.empty() ? Vec3{} : points[0];
+    for (const Vec3& p : points) {
+        lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+        hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+    }
+}
+
+ConformingMesh::ConformingMesh(const ValidPlc& plc) : plc_(&plc) {
+    Vec3 lo, hi;
+    bounding_box(plc.vertices, lo, hi);
+    // Steiner points on the hull are rounded, so they may leave the input's box by an ulp; the filter must cover them.
+    const Vec3 margin = 1e-9 * (hi - lo) + Vec3{1e-15 * std::abs(hi.x), 1e-15 * std::abs(hi.y), 1e-15 * std::abs(hi.z)} +
+                        Vec3{1e-15 * std::abs(lo.x), 1e-15 * std::abs(lo.y), 1e-15 * std::abs(lo.z)};
+    tri_ = Triangulation(lo - margin, hi + margin);
+    if (!tri_.insert_all(plc.vertices))
+        throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all vertices lie in one plane: there is no volume to mesh");
+    WELLMESH_CHECK(Stage::delaunay, tri_.duplicate_count() == 0);
+    info_.resize(plc.vertices.size());
+    for (std::size_t i = 0; i < info_.size(); ++i) {
+        info_[i].carrier = CarrierKind::input_vertex;
+        info_[i].carrier_id = static_cast<std::uint32_t>(i);
+    }
+    vertex_count_ = info_.size();
+    on_facet_.resize(plc.facets.size());
+    on_segment_.resize(plc.segments.size());
+    facet_labelled_.assign(plc.facets.size(), 0);
+    records_.emplace_back();  // record 0 means none
+    for (const ValidCell& c : plc.cells) filled_.push_back(c.filled ? 1 : 0);
+    fit_arrays();
+}
+
+void ConformingMesh::fit_arrays() {
+    const std::size_t slots = tri_.tets().slots();
+    if (cell_.size() >= slots) return;
+    cell_.resize(slots, CellId{0});
+    record_.resize(slots, 0);
+}
+
+TetLabels& ConformingMesh::labels_for_writing(TetId t) {
+    std::uint32_t& r = record_[t.index()];
+    if (r == 0) {
+        if (free_records_.empty()) {
+            r = static_cast<std::uint32_t>(records_.size());
+            records_.emplace_back();
+        } else {
+            r = free_records_.back();
+            free_records_.pop_back();
+            records_[r] = TetLabels{};
+        }
+    }
+    return records_[r];
+}
+
+void ConformingMesh::drop_labels(TetId t) {
+    std::uint32_t& r = record_[t.index()];
+    if (r == 0) return;
+    free_records_.push_back(r);
+    r = 0;
+}
+
+std::span<const FacetId> ConformingMesh::facets_of(const Placement& where) {
+    if (where.carrier == CarrierKind::segment) return plc_->segments[where.carrier_id].facets;
+    carrier_facets_.clear();
+    if (where.carrier == CarrierKind::facet) carrier_facets_.push_back(FacetId{where.carrier_id});
+    return carrier_facets_;
+}
+
+bool ConformingMesh::is_on_facet(VertexId v, FacetId f) const {
+    const VertexInfo& i = info(v);
+    switch (i.carrier) {
+        case CarrierKind::facet: return i.carrier_id == f.value();
+        case CarrierKind::segment: {
+            const auto& facets = plc_->segments[i.carrier_id].facets;
+            return std::find(facets.begin(), facets.end(), f) != facets.end();
+        }
+        case CarrierKind::input_vertex: {
+            const auto& on = plc_->facets[f.index()].vertices;
+            return std::binary_search(on.begin(), on.end(), v);
+        }
+        case CarrierKind::region: return false;
+    }
+    return false;
+}
+
+std::vector<VertexId> ConformingMesh::steiner_vertices_of(FacetId f) const {
+    std::vector<VertexId> out = on_facet_[f.index()];
+    for (const SegmentId s : plc_->facets[f.index()].segments) {
+        const auto more = steiner_vertices_of(s);
+        out.insert(out.end(), more.begin(), more.end());
+    }
+    std::erase_if(out, [&](VertexId v) { return !tri_.is_inserted(v); });
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+std::vector<VertexId> ConformingMesh::steiner_vertices_of(SegmentId s) const {
+    std::vector<VertexId> out = on_segment_[s.index()];
+    std::erase_if(out, [&](VertexId v) { return !tri_.is_inserted(v); });
+    return out;
+}
+
+bool ConformingMesh::is_subsegment(VertexId a, VertexId b) {
+    const TetId t = tri_.find_edge(a, b);
+    return t.valid() && segment_at(t, kEdgeOf[tets().find_corner(t, a)][tets().find_corner(t, b)]).valid();
+}
+
+// ------------------------------------------------------------------------------------------------ labels
+
+void ConformingMesh::label_edge(VertexId a, VertexId b, SegmentId s) {
+    const TetId first = tri_.find_edge(a, b);
+    if (!first.valid()) return;
+    const TetStore& tets = tri_.tets();
+    TetId t = first;
+    const auto& corners = tets.corners(t);
+    VertexId ahead{}, behind{};
+    for (const VertexId v : corners)
+        if (v != a && v != b) (ahead.valid() ? behind : ahead) = v;
+    do {
+        const unsigned edge = kEdgeOf[tets.find_corner(t, a)][tets.find_corner(t, b)];
+        if (s.valid() || has_labels(t)) labels_for_writing(t).segments[edge] = s;
+        const TetFace next = tets.across(t, tets.find_corner(t, behind));
+        behind = ahead;
+        ahead = tets.corner(next.tet(), next.face());
+        t = next.tet();
+    } while (t != first);
+}
+
+void ConformingMesh::label_face(TetFace tf, FacetId f) {
+    if (f.valid()) facet_labelled_[f.index()] = 1;
+    for (const TetFace side : {tf, tri_.tets().across(tf)})
+        if (f.valid() || has_labels(side.tet())) labels_for_writing(side.tet()).facets[side.face()] = f;
+}
+
+void ConformingMesh::clear_facet(FacetId f) {
+    if (!facet_labelled_[f.index()]) return;  // never recovered yet
+    for (std::size_t i = 0; i < record_.size(); ++i)
+        if (record_[i] != 0)
+            for (FacetId& label : records_[record_[i]].facets)
+                if (label == f) label = FacetId{};
+}
+
+
+TetId ConformingMesh::find_subsegment(const Subsegment& s) {
+    if (!tri_.is_inserted(s.a) || !tri_.is_inserted(s.b)) return {};
+    const TetId t = tri_.find_edge(s.a, s.b);
+    if (!t.valid() || segment_at(t, kEdgeOf[tets().find_corner(t, s.a)][tets().find_corner(t, s.b)]) != s.segment) return {};
+    return t;
+}
+
+TetFace ConformingMesh::find_subface(const Subface& s) {
+    for (const VertexId v : s.corners)
+        if (!tri_.is_inserted(v)) return {};
+    const TetFace tf = tri_.find_face(s.corners[0], s.corners[1], s.corners[2]);
+    if (!tf.valid() || facet_at(tf) != s.facet) return {};
+    return tf;
+}
+
+std::vector<FacetId> ConformingMesh::take_broken_facets() {
+    std::sort(broken_facets_.begin(), broken_facets_.end());
+    broken_facets_.erase(std::unique(broken_facets_.begin(), broken_facets_.end()), broken_facets_.end());
+    return std::exchange(broken_facets_, {});
+}
+
+std::vector<SegmentId> ConformingMesh::take_broken_segments() {
+    std::sort(broken_segments_.begin(), broken_segments_.end());
+    broken_segments_.erase(std::unique(broken_segments_.begin(), broken_segments_.end()), broken_segments_.end());
+    return std::exchange(broken_segments_, {});
+}
+
+}  // namespace wellmesh

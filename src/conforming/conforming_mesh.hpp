@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Delaunay triangulation that knows which of its vertices, edges, faces and tetrahedra represent which cells of the input.
+//
+// Labels decide, not geometry: Steiner points on slanted segments and facets are rounded, so they lie only nearly on them, and the
+// flat tetrahedra this makes against the hull can't be told from real ones by measuring. Every vertex stores its carrier, every
+// tetrahedron its cell, and the few tetrahedra at the boundary a record of the facet of each face and the segment of each edge.
+// New tetrahedra inherit from the destroyed one behind each face of the cavity.
+//
+// When a point is inserted on a facet, the subfaces inside the cavity, and those on its boundary whose equatorial sphere contains
+// the point (a rounded point may miss their outer neighbours), are replaced by the star of the point: the flat tetrahedron that
+// then stands on such a face belongs to the cell on the other side. So the surface always passes through the point itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/ids.hpp"
+#include "delaunay/triangulation.hpp"
+#include "validation/valid_plc.hpp"
+#include "wellmesh/tet_mesh.hpp"
+
+namespace wellmesh {
+
+/// Why a vertex was inserted.
+enum class InsertionReason : std::uint8_t {
+    input,
+    recovery,          ///< a segment or facet was missing
+    encroachment,      ///< a vertex encroached a subsegment or subface
+    size,
+    radius_edge,
+    sliver,
+    boundary_by_size,  ///< a subsegment or subface that the circumcentre of a tetrahedron bad for this reason would encroach
+    boundary_by_radius_edge,
+    boundary_by_sliver
+};
+
+struct VertexInfo {
+    CarrierKind carrier = CarrierKind::region;
+    InsertionReason reason = InsertionReason::input;
+    std::uint32_t carrier_id = 0;  ///< vertex, SegmentId, FacetId or CellId value, by kind
+    VertexId parent{};             ///< the vertex responsible for the insertion [LiTeng01, section 5]
+    double insertion_length = 0;   ///< e_v: shortest edge at the vertex just after its insertion
+};
+
+struct Subsegment {
+    VertexId a{}, b{};
+    SegmentId segment{};
+};
+
+struct Subface {
+    std::array<VertexId, 3> corners{};
+    FacetId facet{};
+};
+
+/// Where a point is about to go.
+struct Placement {
+    CarrierKind carrier = CarrierKind::region;
+    std::uint32_t carrier_id = 0;
+    VertexId a{}, b{};  ///< carrier segment: the ends of the subsegment that is split (it need not be a mesh edge)
+    static Placement on_segment(const Subsegment& s) { return {CarrierKind::segment, s.segment.value(), s.a, s.b}; }
+    static Placement on_facet(FacetId f) { return {CarrierKind::facet, f.value(), {}, {}}; }
+    static Placement in_cell(CellId c) { return {CarrierKind::region, c.value(), {}, {}}; }
+};
+
+/// Labels of the faces and edges of one tetrahedron at the boundary; invalid ids where there is none.
+struct TetLabels {
+    std::array<FacetId, 4> facets{};
+    std::array<SegmentId, 6> segments{};
+};
+
+class ConformingMesh {
+public:
+    /// Triangulates the input's vertices: mesh vertex i is vertex i of the PLC. Nothing is labelled yet.
+    /// @throws MeshError{bad_input} if all vertices are coplanar.
+    explicit ConformingMesh(const ValidPlc& plc);
+
+    [[nodiscard]] const ValidPlc& plc() const { return *plc_; }
+    [[nodiscard]] Triangulation& triangulation() { return tri_; }
+    [[nodiscard]] const Triangulation& triangulation() const { return tri_; }
+    [[nodiscard]] const TetStore& tets() const { return tri_.tets(); }
+    [[nodiscard]] const Vec3& point(VertexId v) const { return tri_.point(v); }
+    [[nodiscard]] const VertexInfo& info(VertexId v) const { return info_[v.index()]; }
+    [[nodiscard]] VertexInfo& info(VertexId v) { return info_[v.index()]; }
+    [[nodiscard]] std::size_t vertex_slots() const { return info_.size(); }
+    [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
+
+    [[nodiscard]] CellId cell(TetId t) const { return cell_[t.index()]; }
+    [[nodiscard]] bool in_domain(TetId t) const { return filled_[cell_[t.index()].index()] != 0; }
+    [[nodiscard]] bool is_filled(CellId c) const { return filled_[c.index()] != 0; }
+    [[nodiscard]] bool has_labels(TetId t) const { return record_[t.index()] != 0; }
+    /// @pre has_labels(t)
+    [[nodiscard]] const TetLabels& labels(TetId t) const { return records_[record_[t.index()]]; }
+    [[nodiscard]] FacetId facet_at(TetFace tf) const { return has_labels(tf.tet()) ? labels(tf.tet()).facets[tf.face()] : FacetId{}; }
+    [[nodiscard]] SegmentId segment_at(TetId t, unsigned edge) const { return has_labels(t) ? labels(t).segments[edge] : SegmentId{}; }
+    /// Facets whose closure contains the point of this placement: one for a facet, several for a segment.
+    [[nodiscard]] std::span<const FacetId> facets_of(const Placement& where);
+    [[nodiscard]] bool is_on_facet(VertexId v, FacetId f) const;
+    /// Steiner vertices on the facet and on its segments, ascending; or on the segment, in order of insertion.
+    [[nodiscard]] std::vector<VertexId> steiner_vertices_of(FacetId f) const;
+    [[nodiscard]] std::vector<VertexId> steiner_vertices_of(SegmentId s) const;
+    /// Is ab a labelled edge?
+    [[nodiscard]] bool is_subsegment(VertexId a, VertexId b);
+
+    /// Does a point placed on a facet really lie in one of its subfaces? (Rounding, or an encroached neighbourhood, may put it outside.)
+    /// @pre cavity is the last one found.
+    [[nodiscard]] bool holds_carrier(const Cavity& cavity, const Placement& where) const;
+
+    // --- labels, for recovery
+    void label_edge(VertexId a, VertexId b, SegmentId s);  ///< on all tetrahedra around the edge; an invalid s takes the label away. Does nothing if there is no such edge
+    void label_face(TetFace tf, FacetId f);                ///< on both sides; an invalid f takes the label away
+    void clear_facet(FacetId f);                           ///< takes all labels of f away, O(boundary)
+    void set_cell(TetId t, CellId c) { cell_[t.index()] = c; }
+
+    /// Inserts cavity.point. Labels and cells follow; constraints that the point destroys without lying on them are noted as broken.
+    VertexId insert(const Cavity& cavity, const Placement& where, const VertexInfo& info);
+    /// Puts a removed vertex back, or elsewhere on its carrier: like insert, keeping id and info.
+    void reinsert(VertexId v, const Cavity& cavity, const Placement& where);
+    /// Takes v out. Cells and labels of the filling are found by flooding from the boundary of the hole. @return false, with nothing
+    /// changed, if the mesh without v can't represent every facet and segment that passes through the hole.
+    bool remove(const Hole& hole);
+
+    /// Facets and segments that lost a piece since the last call.
+    [[nodiscard]] std::vector<FacetId> take_broken_facets();
+    [[nodiscard]] std::vector<SegmentId> take_broken_segments();
+    [[nodiscard]] bool has_broken() const { return !broken_facets_.empty() || !broken_segments_.empty(); }
+
+    /// The subsegment or subface in the last state of the mesh, if it is one.
+    [[nodiscard]] TetId find_subsegment(const Subsegment& s);  ///< a tetrahedron with the labelled edge, or invalid
+    [[nodiscard]] TetFace find_subface(const Subface& s);      ///< one side of the labelled face, or invalid
+
+private:
+    struct CapturedFace {
+        std::array<VertexId, 3> corners{};
+        CellId cell{};
+        FacetId facet{};
+        std::array<SegmentId, 3> segments{};  // edge opposite corner k
+        bool swapped = false;                 // a flat tetrahedron will stand here: it belongs to the other side
+    };
+    struct InteriorFace {
+        std::array<VertexId, 3> corners{};
+        FacetId facet{};
+        std::uint32_t boundary = kNotOnBoundary;  // index of the cavity's boundary face that it is
+        bool used = false;
+        static constexpr std::uint32_t kNotOnBoundary = 0xffffffffU;
+    };
+    struct LoopEdge {
+        VertexId a{}, b{};
+        FacetId facet{};
+    };
+
+    void capture(const Cavity& cavity);
+    void collect_interior(const Cavity& cavity, const Placement& where);
+    void replace_subfaces(const Cavity& cavity, const Placement& where, FacetId facet);
+    void commit(VertexId v, const Cavity& cavity, const Placement& where);
+    void note_destroyed(const Placement& where);
+    TetLabels& labels_for_writing(TetId t);
+    void drop_labels(TetId t);
+    void fit_arrays();
+    [[nodiscard]] bool is_segment_edge(VertexId a, VertexId b) const;
+
+    const ValidPlc* plc_;
+    Triangulation tri_;
+    std::vector<VertexInfo> info_;
+    std::size_t vertex_count_ = 0;
+    std::vector<CellId> cell_;
+    std::vector<std::uint32_t> record_;  // index into records_; 0: no labels
+    std::vector<TetLabels> records_;
+    std::vector<std::uint32_t> free_records_;
+    std::vector<char> filled_;
+    std::vector<std::vector<VertexId>> on_facet_;    // Steiner vertices ever inserted on each facet,
+    std::vector<std::vector<VertexId>> on_segment_;  // and on each segment
+    std::vector<char> facet_labelled_;
+    std::vector<FacetId> broken_facets_;
+    std::vector<SegmentId> broken_segments_;
+
+    // scratch of one insertion
+    std::vector<CapturedFace> captured_;
+    std::vector<InteriorFace> interior_;
+    std::vector<Subsegment> interior_segments_;
+    std::vector<LoopEdge> loop_;
+    std::vector<FacetId> carrier_facets_;
+
+    friend class HoleLabeller;
+};
+
+/// Box of the input's vertices.
+void bounding_box(const std::vector<Vec3>& points, Vec3& lo, Vec3& hi);
+
+}  // namespace wellmesh

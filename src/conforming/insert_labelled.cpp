@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// Insertion of a vertex into a labelled mesh: what the new tetrahedra inherit, and how the surface is led through a point on it.
+#include <algorithm>
+
+#include "conforming/conforming_mesh.hpp"
+#include "core/check.hpp"
+#include "core/vec3_math.hpp"
+
+namespace wellmesh {
+namespace {
+
+bool same_edge(VertexId a, VertexId b, VertexId c, VertexId d) { return (a == c && b == d) || (a == d && b == c); }
+
+/// Smallest barycentric coordinate of p in the triangle, both seen along `normal`: how deep inside it lies.
+double depth_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& normal) {
+    const double area = dot(cross(b - a, c - a), normal);
+    if (area == 0) return -1e300;
+    return std::min({dot(cross(b - p, c - p), normal), dot(cross(c - p, a - p), normal), dot(cross(a - p, b - p), normal)}) / area;
+}
+
+}  // namespace
+
+void ConformingMesh::capture(const Cavity& cavity) {
+    const TetStore& tets = tri_.tets();
+    captured_.resize(cavity.boundary.size());
+    for (std::size_t i = 0; i < cavity.boundary.size(); ++i) {
+        const TetFace inside = cavity.boundary[i].inside;
+        CapturedFace& c = captured_[i];
+        c = CapturedFace{};
+        c.corners = tets.face_corners(inside);
+        c.cell = cell_[inside.tet().index()];
+        if (!has_labels(inside.tet())) continue;
+        const TetLabels& l = labels(inside.tet());
+        c.facet = l.facets[inside.face()];
+        const auto& slot = kFaceCorners[inside.face()];
+        for (std::size_t k = 0; k < 3; ++k) c.segments[k] = l.segments[kEdgeOf[slot[(k + 1) % 3]][slot[(k + 2) % 3]]];
+    }
+}
+
+/// Subfaces and subsegments that the insertion would delete, and those on the cavity's boundary that a point on their facet replaces.
+void ConformingMesh::collect_interior(const Cavity& cavity, const Placement& where) {
+    const TetStore& tets = tri_.tets();
+    interior_.clear();
+    interior_segments_.clear();
+    for (const TetId t : cavity.tets) {
+        if (!has_labels(t)) continue;
+        const TetLabels& l = labels(t);
+        for (unsigned f = 0; f < 4; ++f) {
+            if (!l.facets[f].valid()) continue;
+            const TetId other = tets.across(t, f).tet();
+            if (tri_.in_last_cavity(other) && t < other) interior_.push_back({tets.face_corners(TetFace{t, f}), l.facets[f], InteriorFace::kNotOnBoundary, false});
+        }
+        for (unsigned e = 0; e < 6; ++e) {
+            if (!l.segments[e].valid()) continue;
+            const VertexId a = tets.corner(t, kEdgeCorners[e][0]), b = tets.corner(t, kEdgeCorners[e][1]);
+            const auto known = [&](const Subsegment& s) { return same_edge(s.a, s.b, a, b); };
+            if (std::any_of(interior_segments_.begin(), interior_segments_.end(), known)) continue;
+            bool on_boundary = false;
+            for (const CapturedFace& c : captured_)
+                for (std::size_t k = 0; k < 3 && !on_boundary; ++k)
+                    on_boundary = c.segments[k].valid() && same_edge(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], a, b);
+            if (!on_boundary) interior_segments_.push_back({a, b, l.segments[e]});
+        }
+    }
+    const auto facets = facets_of(where);
+    if (facets.empty()) return;
+    for (std::size_t i = 0; i < captured_.size(); ++i) {
+        const CapturedFace& c = captured_[i];
+        if (!c.facet.valid() || std::find(facets.begin(), facets.end(), c.facet) == facets.end()) continue;
+        if (side_of_equatorial_sphere(point(c.corners[0]), point(c.corners[1]), point(c.corners[2]), cavity.point) == Sign::positive)
+            interior_.push_back({c.corners, c.facet, static_cast<std::uint32_t>(i), false});
+    }
+}
+
+bool ConformingMesh::is_segment_edge(VertexId a, VertexId b) const {
+    for (const CapturedFace& c : captured_)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (c.segments[k].valid() && same_edge(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], a, b)) return true;
+    return std::any_of(interior_segments_.begin(), interior_segments_.end(), [&](const Subsegment& s) { return same_edge(s.a, s.b, a, b); });
+}
+
+/// Finds the subfaces of `facet` that the point's star replaces: the ones connected, not across subsegments, to where the point lies.
+void ConformingMesh::replace_subfaces(const Cavity& cavity, const Placement& where, FacetId facet) {
+    std::vector<std::size_t> mine;
+    for (std::size_t i = 0; i < interior_.size(); ++i)
+        if (interior_[i].facet == facet) mine.push_back(i);
+    if (mine.empty()) return;
+    std::vector<std::size_t> stack;
+    const auto take = [&](std::size_t i) {
+        if (interior_[i].used) return;
+        interior_[i].used = true;
+        stack.push_back(i);
+    };
+    if (where.carrier == CarrierKind::segment) {
+        for (const std::size_t i : mine) {
+            const auto& c = interior_[i].corners;
+            if (std::find(c.begin(), c.end(), where.a) != c.end() && std::find(c.begin(), c.end(), where.b) != c.end()) take(i);
+        }
+    } else {
+        std::size_t home = mine[0];
+        double deepest = -1e308;
+        for (const std::size_t i : mine) {
+            const auto& c = interior_[i].corners;
+            const double depth = depth_inside(point(c[0]), point(c[1]), point(c[2]), cavity.point, plc_->facets[facet.index()].normal);
+            if (depth > deepest) {
+                deepest = depth;
+                home = i;
+            }
+        }
+        take(home);
+    }
+    while (!stack.empty()) {
+        const auto corners = interior_[stack.back()].corners;
+        stack.pop_back();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const VertexId a = corners[(k + 1) % 3], b = corners[(k + 2) % 3];
+            if (where.carrier == CarrierKind::segment && same_edge(a, b, where.a, where.b)) continue;
+            if (is_segment_edge(a, b)) {
+                loop_.push_back({a, b, facet});
+                continue;
+            }
+            bool shared = false;
+            for (const std::size_t j : mine) {
+                const auto& d = interior_[j].corners;
+                if (d == corners) continue;
+                if (std::find(d.begin(), d.end(), a) == d.end() || std::find(d.begin(), d.end(), b) == d.end()) continue;
+                shared = true;
+                take(j);
+            }
+            if (!shared) loop_.push_back({a, b, facet});
+        }
+    }
+    for (const std::size_t i : mine)
+        if (interior_[i].used && interior_[i].boundary != InteriorFace::kNotOnBoundary) captured_[interior_[i].boundary].swapped = true;
+}
+
+bool ConformingMesh::holds_carrier(const Cavity& cavity, const Placement& where) const {
+    if (where.carrier != CarrierKind::facet) return true;
+    const FacetId facet{where.carrier_id};
+    constexpr double kEdgeTolerance = -1e-6;  // relative: a point on an edge of two subfaces lies in both
+    for (const TetId t : cavity.tets) {
+        if (!has_labels(t)) continue;
+        for (unsigned f = 0; f < 4; ++f) {
+            if (labels(t).facets[f] != facet) continue;
+            const auto c = tets().face_corners(TetFace{t, f});
+            if (depth_inside(point(c[0]), point(c[1]), point(c[2]), cavity.point, plc_->facets[facet.index()].normal) > kEdgeTolerance) return true;
+        }
+    }
+    return false;
+}
+
+void ConformingMesh::note_destroyed(const Placement& where) {
+    for (const InteriorFace& f : interior_)
+        if (!f.used && f.boundary == InteriorFace::kNotOnBoundary) broken_facets_.push_back(f.facet);
+    for (const Subsegment& s : interior_segments_)
+        if (where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b)) broken_segments_.push_back(s.segment);
+}
+
+void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& where) {
+    capture(cavity);
+    loop_.clear();
+    interior_.clear();
+    interior_segments_.clear();
+    bool labelled = false;
+    for (const TetId t : cavity.tets) labelled = labelled || has_labels(t);
+    if (labelled) {
+        collect_interior(cavity, where);
+        for (const FacetId f : facets_of(where)) replace_subfaces(cavity, where, f);
+        note_destroyed(where);
+    }
+    const bool splits = where.carrier == CarrierKind::segment;
+    for (const TetId t : cavity.tets) drop_labels(t);
+
+    tri_.insert_vertex(v, cavity);
+    fit_arrays();
+
+    const TetStore& tets = tri_.tets();
+    const auto& fresh = tri_.new_tets();
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        const TetId t = fresh[i];
+        const CapturedFace& c = captured_[i];
+        cell_[t.index()] = c.cell;
+        const unsigned at = tets.find_corner(t, v);
+        if (c.swapped) {
+            const TetFace outside = tets.across(t, at);
+            cell_[t.index()] = cell_[outside.tet().index()];
+            if (has_labels(outside.tet())) labels_for_writing(outside.tet()).facets[outside.face()] = FacetId{};
+        } else if (c.facet.valid()) {
+            labels_for_writing(t).facets[at] = c.facet;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const VertexId a = c.corners[(k + 1) % 3], b = c.corners[(k + 2) % 3];
+            if (c.segments[k].valid() && !(splits && same_edge(a, b, where.a, where.b)))
+                labels_for_writing(t).segments[kEdgeOf[tets.find_corner(t, a)][tets.find_corner(t, b)]] = c.segments[k];
+            for (const LoopEdge& e : loop_)
+                if (same_edge(e.a, e.b, a, b)) labels_for_writing(t).facets[tets.find_corner(t, c.corners[k])] = e.facet;
+        }
+        if (splits)
+            for (const VertexId end : {where.a, where.b}) {
+                const unsigned other = tets.find_corner(t, end);
+                if (other < 4) labels_for_writing(t).segments[kEdgeOf[at][other]] = SegmentId{where.carrier_id};
+            }
+    }
+    if (splits) label_edge(where.a, where.b, SegmentId{});  // it may have survived on the hull, an ulp away from the new vertex
+}
+
+VertexId ConformingMesh::insert(const Cavity& cavity, const Placement& where, const VertexInfo& vertex_info) {
+    const VertexId v = tri_.add_point(cavity.point);
+    info_.push_back(vertex_info);
+    info_.back().carrier = where.carrier;
+    info_.back().carrier_id = where.carrier_id;
+    ++vertex_count_;
+    if (where.carrier == CarrierKind::facet) on_facet_[where.carrier_id].push_back(v);
+    if (where.carrier == CarrierKind::segment) on_segment_[where.carrier_id].push_back(v);
+    commit(v, cavity, where);
+    return v;
+}
+
+void ConformingMesh::reinsert(VertexId v, const Cavity& cavity, const Placement& where) {
+    tri_.set_point(v, cavity.point);
+    ++vertex_count_;
+    commit(v, cavity, where);
+}
+
+}  // namespace wellmesh

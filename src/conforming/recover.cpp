@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recovery: makes missing subsegments and subfaces appear by splitting, first all segments, then facet by facet.
+//
+// A facet is compared with the two-dimensional Delaunay triangulation of its vertices, which exists for the comparison only: a
+// triangle of it that is no face of the mesh is split at its circumcentre. Where four or more vertices are nearly cocircular
+// the two triangulations may legally choose other diagonals; then faces of the mesh are found that cover the same polygon.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "conforming/boundary_refiner.hpp"
+#include "conforming/facet_triangulation.hpp"
+#include "conforming/place_point.hpp"
+#include "core/check.hpp"
+#include "core/rng.hpp"
+#include "core/vec3_math.hpp"
+
+namespace wellmesh {
+
+void BoundaryRefiner::queue_chain(SegmentId s) {
+    const ValidSegment& segment = mesh_.plc().segments[s.index()];
+    const Vec3 &a = mesh_.point(segment.ends[0]), &b = mesh_.point(segment.ends[1]);
+    std::vector<std::pair<double, VertexId>> chain{{-1e300, segment.ends[0]}, {1e300, segment.ends[1]}};
+    for (const VertexId v : mesh_.steiner_vertices_of(s)) chain.push_back({dot(mesh_.point(v) - a, b - a), v});
+    std::sort(chain.begin(), chain.end());
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+        const Subsegment piece{chain[i].second, chain[i + 1].second, s};
+        if (!mesh_.find_subsegment(piece).valid()) segments_.push_back({piece, VertexId{}});
+    }
+}
+
+void BoundaryRefiner::recover_segments() {
+    for (std::size_t i = 0; i < mesh_.plc().segments.size(); ++i) {
+        const auto& ends = mesh_.plc().segments[i].ends;
+        segments_.push_back({{ends[0], ends[1], SegmentId{i}}, VertexId{}});
+    }
+    drain_segments();
+    while (mesh_.has_broken()) repair_broken();
+}
+
+/// @return false if points had to be inserted (which may have broken other facets): call again.
+bool BoundaryRefiner::recover_facet(FacetId f) {
+    for (unsigned round = 0;; ++round) {
+        constexpr unsigned kTooManyRounds = 1000;  // each inserts points where the facet is coarsest: dozens are many
+        if (round > kTooManyRounds)
+            throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("facet {} could not be recovered", mesh_.plc().facets[f.index()].source_facet + 1),
+                            {{EntityKind::facet, mesh_.plc().facets[f.index()].source_facet + 1, mesh_.plc().facets[f.index()].origin}});
+        FacetTriangulation flat(mesh_, f);
+        const std::vector<FacetTriangulation::Missing> missing = flat.match_faces(mesh_);
+        if (missing.empty()) {
+            mesh_.clear_facet(f);
+            for (const TetFace tf : flat.faces()) mesh_.label_face(tf, f);
+            return round == 0;
+        }
+        std::vector<Vec3> taken;
+        for (const auto& m : missing) {
+            const Vec3 &a = mesh_.point(m.corners[0]), &b = mesh_.point(m.corners[1]), &c = mesh_.point(m.corners[2]);
+            double radius = 0;
+            const Vec3 centre = circumcentre(a, b, c, &radius);
+            if (std::any_of(taken.begin(), taken.end(), [&](const Vec3& p) { return squared_distance(p, centre) < radius * radius; })) continue;
+            const ValidFacet& facet = mesh_.plc().facets[f.index()];
+            const std::uint64_t key = mix64(seed_, mix64(m.corners[0].value(), mix64(m.corners[1].value(), m.corners[2].value())));
+            const Vec3 unit = picking_point(2, key, 1);
+            const Vec3 wanted = project_to_facet(facet, centre + (0.05 * radius * unit.x) * facet.axis_u + (0.05 * radius * unit.y) * facet.axis_v);
+            poll_or_throw();
+            taken.push_back(centre);
+            try_insert_on_facet(f, wanted, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
+        }
+        drain_segments();
+    }
+}
+
+/// Inserts the point, or splits the subsegments that it would encroach. Nothing happens at the place of a vertex.
+void BoundaryRefiner::try_insert_on_facet(FacetId f, const Vec3& wanted, TetId near, const SplitRequest& request) {
+    const Placement where = Placement::on_facet(f);
+    if (!mesh_.triangulation().find_conflict_cavity(wanted, near, cavity_)) return;
+    find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+    const std::vector<Subsegment> targets = encroached_segments_;
+    if (!targets.empty()) {
+        for (const Subsegment& target : targets)
+            if (mesh_.find_subsegment(target).valid()) split(target, request);
+        return;
+    }
+    inserted(mesh_.insert(cavity_, where, {CarrierKind::facet, request.reason, f.value(), request.parent, 0}));
+}
+
+void BoundaryRefiner::repair_broken() {
+    bool changed = false;
+    for (const SegmentId s : mesh_.take_broken_segments()) queue_chain(s);
+    drain_segments();
+    for (const FacetId f : mesh_.take_broken_facets()) {
+        if (!conforming_) continue;  // recover_all comes to it anyway
+        recover_facet(f);
+        changed = true;
+    }
+    if (changed && !mesh_.has_broken() && segments_.empty()) {
+        classify_cells(mesh_);
+        enqueue_all_encroached();
+        if (on_repair) on_repair();
+    }
+}
+
+void BoundaryRefiner::recover_all() {
+    recover_segments();
+    // A point on one facet may destroy faces of another: go round until a whole round changes nothing.
+    std::vector<FacetId> todo;
+    for (std::size_t i = 0; i < mesh_.plc().facets.size(); ++i) todo.push_back(FacetId{i});
+    while (!todo.empty()) {
+        for (const FacetId f : todo) recover_facet(f);
+        for (const SegmentId s : mesh_.take_broken_segments()) queue_chain(s);
+        drain_segments();
+        todo = mesh_.take_broken_facets();
+    }
+    classify_cells(mesh_);
+    conforming_ = true;
+    faces_.clear();
+    enqueue_all_encroached();
+}
+
+}  // namespace wellmesh
