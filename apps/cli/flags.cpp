@@ -64,8 +64,7 @@ bool replaces_input(const fs::path& output, const fs::path& input) {
 }
 
 fs::path file_written(const fs::path& output) {
-    std::error_code ignored;
-    fs::path name = fs::weakly_canonical(output, ignored);
+    fs::path name = resolved(output);
     return name.extension() == ".ele" ? name.replace_extension(".node") : name;
 }
 
@@ -170,7 +169,7 @@ void require_report(const std::string& json, const std::vector<std::string>& oth
     if (json.empty()) return;
     std::error_code ignored;
     for (const std::string& other : others)
-        if (fs::weakly_canonical(json, ignored) == fs::weakly_canonical(other, ignored) || fs::equivalent(json, other, ignored))
+        if (resolved(json) == resolved(other) || fs::equivalent(json, other, ignored))
             bad_options({fmt::format("--json {}: writing it would replace {}", json, other)});
     require_writable(json);
 }

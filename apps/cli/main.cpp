@@ -5,7 +5,10 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <csignal>
 #include <cstdio>
+#include <exception>
 #include <new>
 
 #include "commands.hpp"
@@ -37,6 +40,8 @@ void print_error(const MeshError& error) {
 
 int run_guarded(const Command& command) {
     try {
+        // A file beyond the size limit is then an error of write(), with a message and a status, not a death.
+        std::signal(SIGXFSZ, SIG_IGN);
         Interrupt interrupt;
         return command(interrupt);
     } catch (const MeshError& error) {

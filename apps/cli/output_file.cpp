@@ -39,14 +39,14 @@ int write_and_close(int descriptor, std::string_view text) {
     return error;
 }
 
-/// What `path` finally names, so that a symbolic link stays one.
-fs::path resolved(const fs::path& path) {
-    std::error_code ignored;
-    const fs::path target = fs::weakly_canonical(path, ignored);
-    return target.empty() ? path : target;
-}
-
 }  // namespace
+
+fs::path resolved(const fs::path& path) {
+    // Absolute first: weakly_canonical leaves a name relative when no part of it exists.
+    std::error_code error;
+    const fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
+    return error ? path : target;
+}
 
 void write_stdout(std::string_view text) {
     if (const int error = write_all(STDOUT_FILENO, text); error != 0) fail("standard output", error);
@@ -80,9 +80,8 @@ void require_writable(const fs::path& path) {
     std::error_code ignored;
     const fs::file_status status = fs::status(target, ignored);
     if (fs::is_directory(status)) fail(path.string(), EISDIR);
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
-    if (::access(in_place ? target.c_str() : folder.c_str(), W_OK) != 0) fail(path.string(), errno);
+    if (::access(in_place ? target.c_str() : target.parent_path().c_str(), W_OK) != 0) fail(path.string(), errno);
 }
 
 }  // namespace wellmesh::cli

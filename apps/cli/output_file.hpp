@@ -11,6 +11,9 @@ namespace wellmesh::cli {
 /// Name that stands for standard output.
 inline constexpr std::string_view kStandardOutput = "-";
 
+/// The absolute name that `path` finally leads to, symbolic links followed as far as they exist.
+[[nodiscard]] std::filesystem::path resolved(const std::filesystem::path& path);
+
 /// Writes `text` to `path`: under a temporary name beside it, then renamed; straight into what is no regular file
 /// (/dev/null, a named pipe); to standard output for "-".
 /// @throws MeshError{cannot_write}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs the built program as a user would: its own process, pipes, signals, limits.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace wellmesh::testing {
+
+struct Outcome {
+    int status = -1;  ///< exit status; 128 + signal when a signal killed it
+    std::string out, err;
+};
+
+struct RunOptions {
+    std::filesystem::path folder;                      ///< working directory
+    bool terminal = false;                             ///< standard error is a pseudo-terminal
+    bool closed_stdout = false;                        ///< nobody reads standard output
+    std::optional<std::uint64_t> file_size_limit{};    ///< bytes, stands for a full disk
+    std::optional<std::uint64_t> address_space_limit{};
+    bool ignore_interrupt = false;                     ///< as nohup and background jobs of scripts do
+    std::optional<int> signal{};                       ///< sent once `signal_after` has passed
+    std::chrono::milliseconds signal_after{500};
+};
+
+/// Runs `wellmesh ARGUMENTS`. One that runs longer than CTest allows is CTest's to kill.
+Outcome run_wellmesh(const std::vector<std::string>& arguments, const RunOptions& options = {});
+
+/// A folder of its own for each test, removed at the end.
+class ScratchFolder {
+public:
+    ScratchFolder();
+    ~ScratchFolder();
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] std::string write(const std::string& name, const std::string& content) const;  ///< returns the full path
+    [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+    [[nodiscard]] std::vector<std::string> listing() const;  ///< names, sorted, hidden ones included
+
+private:
+    std::filesystem::path path_;
+};
+
+std::string read_text(const std::filesystem::path& path);
+
+}  // namespace wellmesh::testing
