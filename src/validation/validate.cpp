@@ -12,6 +12,7 @@
 #include "validation/facet_planarity.hpp"
 #include "validation/fill_cells.hpp"
 #include "validation/find_duplicates.hpp"
+#include "validation/find_intersections.hpp"
 #include "validation/merge_coplanar.hpp"
 #include "validation/valid_plc.hpp"
 
@@ -54,7 +55,9 @@ void ValidPlcBuilder::run() {
         rounding.largest_coordinate = std::max({rounding.largest_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     soup = make_soup(input, plc, rounding, report);
     edges = make_edge_table(soup.triangles);
+    find_intersections(input, soup, report);
     groups = merge_coplanar(input, soup, edges, plc, rounding);
+    find_thin_features(input, soup, edges, groups, rounding, report);
     find_segments();
     find_facets();
     if (report.has_errors()) return;

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Simplices of the complex may meet only in common vertices and edges. Everything else is listed.
+#pragma once
+
+#include "validation/merge_coplanar.hpp"
+#include "validation/report.hpp"
+#include "validation/rounding.hpp"
+#include "validation/working_complex.hpp"
+
+namespace wellmesh {
+
+/// Tests, exactly, every pair of triangles, wires and lone vertices whose boxes meet, and reports each pair of facets (or facet and
+/// segment, ...) once, with a point of the intersection. The triangles are those of the input, so merging facets by tolerance neither
+/// hides nor invents anything.
+void find_intersections(const CleanInput& input, const Soup& soup, Report& report);
+
+/// Reports vertices that lie within `rounding.contact()` of a facet or segment that they do not belong to, without touching it: what
+/// separates them is below the last bits of the coordinates. Triangles in the same merged facet are only tested against segments.
+void find_thin_features(const CleanInput& input, const Soup& soup, const EdgeTable& edges, const FacetGroups& groups, const Rounding& rounding,
+                        Report& report);
+
+}  // namespace wellmesh
