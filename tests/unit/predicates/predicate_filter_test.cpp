@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "ladder_check.hpp"
+#include "oracle/rational_predicates.hpp"
+
+namespace wellmesh::test {
+namespace {
+
+/// Extents of the smallest box of the five points, the tightest bound that anyone may ask for.
+Vec3 extents(const Quintuple& q) {
+    Vec3 low = q[0], high = q[0];
+    for (const Vec3& p : q) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    return {high.x - low.x, high.y - low.y, high.z - low.z};
+}
+
+TEST(PredicateFilter, NeverErrsWithTheTightestBox) {
+    int cases = 0, orient3d_decided = 0, insphere_decided = 0;
+    std::uint64_t stream = 200;
+    for (const Family& family : kFamilies) {
+        ++stream;
+        const auto n = static_cast<std::uint64_t>(60'000 * family.share);
+        for (std::uint64_t i = 0; i < n; ++i) {
+            Random random(stream, i);
+            const Quintuple q = family.generate(random);
+            const auto& [a, b, c, d, e] = q;
+            const PredicateFilter filter(extents(q));
+            const Decision orientation = decide_orient3d(filter, a, b, c, d), side = decide_insphere(filter, a, b, c, d, e);
+            ASSERT_EQ(orientation.sign, oracle::orient3d(a, b, c, d)) << describe(q, family.name, i);
+            ASSERT_EQ(side.sign, oracle::insphere(a, b, c, d, e)) << describe(q, family.name, i);
+            ASSERT_EQ(filter.orient3d(a, b, c, d), orientation.sign);
+            ASSERT_EQ(filter.insphere(a, b, c, d, e), side.sign);
+            ASSERT_EQ(filter.insphere_perturbed(a, b, c, d, e), insphere_perturbed(a, b, c, d, e));
+            ++cases;
+            orient3d_decided += orientation.rung == Rung::static_filter;
+            insphere_decided += side.rung == Rung::static_filter;
+        }
+    }
+    EXPECT_GT(orient3d_decided, cases / 4);
+    EXPECT_GT(insphere_decided, cases / 4);
+}
+
+/// What the kernel sees: neighbouring points, as far apart as in a mesh of 100,000 points. (Random quintuples of them are far
+/// worse shaped than Delaunay tetrahedra, so these rates are upper bounds; with a million points the box's bound is weaker.)
+TEST(PredicateFilter, SeldomFailsOnRandomNeighbours) {
+    const PredicateFilter filter(Vec3{1, 1, 1});
+    int orient3d_failed = 0, insphere_failed = 0;
+    constexpr int kCases = 100'000;
+    for (std::uint64_t i = 0; i < kCases; ++i) {
+        Random r(300, i);
+        const Vec3 corner = r.point([&] { return 0.98 * r.unit(); });
+        Quintuple q;
+        for (Vec3& p : q) p = {corner.x + 0.02 * r.unit(), corner.y + 0.02 * r.unit(), corner.z + 0.02 * r.unit()};
+        orient3d_failed += decide_orient3d(filter, q[0], q[1], q[2], q[3]).rung != Rung::static_filter;
+        insphere_failed += decide_insphere(filter, q[0], q[1], q[2], q[3], q[4]).rung != Rung::static_filter;
+    }
+    EXPECT_LT(orient3d_failed, kCases / 1000);
+    EXPECT_LT(insphere_failed, kCases / 50);
+}
+
+TEST(PredicateFilter, DefaultAndMeaninglessBoxesNeverDecide) {
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, d{0, 0, 1}, e{0.25, 0.25, 0.25};
+    for (const PredicateFilter& filter : {PredicateFilter(), PredicateFilter({nan, 1, 1}), PredicateFilter({1, infinity, 1})}) {
+        EXPECT_EQ(decide_orient3d(filter, a, b, c, d).rung, Rung::forward_bound);
+        EXPECT_EQ(decide_insphere(filter, a, b, c, d, e).rung, Rung::forward_bound);
+        EXPECT_EQ(filter.orient3d(a, b, c, d), Sign::positive);
+        EXPECT_EQ(filter.insphere(a, b, c, d, e), Sign::positive);
+    }
+}
+
+/// All points in one axis-parallel plane: zero without any expansion, with and without a box that knows.
+TEST(PredicateFilter, FlatBoxIsDecidedCheaply) {
+    const std::uint64_t before = exact_predicate_calls();
+    for (const PredicateFilter& filter : {PredicateFilter(Vec3{1, 1, 0}), PredicateFilter(Vec3{1, 1, 1})})
+        for (std::uint64_t i = 0; i < 1000; ++i) {
+            Random r(310, i);
+            Quintuple q = uniform(r);
+            for (Vec3& p : q) p.z = 0.3;
+            ASSERT_EQ(filter.orient3d(q[0], q[1], q[2], q[3]), Sign::zero);
+            ASSERT_EQ(decide_orient3d(filter, q[0], q[1], q[2], q[3]).rung, Rung::forward_bound);
+            ASSERT_EQ(decide_insphere(filter, q[0], q[1], q[2], q[3], q[4]).rung, Rung::forward_bound);
+        }
+    EXPECT_EQ(exact_predicate_calls(), before);
+}
+
+TEST(PredicateFilter, ForwardsTheSphereTests) {
+    const PredicateFilter filter(Vec3{4, 4, 4});
+    EXPECT_EQ(filter.side_of_diametral_sphere({0, 0, 0}, {2, 0, 0}, {1, 0.5, 0}), Sign::positive);
+    EXPECT_EQ(filter.side_of_equatorial_sphere({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 1, 1}), Sign::positive);
+}
+
+}  // namespace
+}  // namespace wellmesh::test
