@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certify/ball_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/vec3_math.hpp"
+
+namespace wellmesh::certifying {
+namespace {
+
+using Long = long double;
+using LongVec = std::array<Long, 3>;
+
+constexpr Long kLongUnit = std::numeric_limits<Long>::epsilon();       // 2^-63 on x86; 2^-52 where long double is double
+constexpr double kUnit = std::numeric_limits<double>::epsilon();  // twice the rounding unit
+
+LongVec difference(const Vec3& p, const Vec3& q, double scale) {
+    const auto s = static_cast<Long>(scale);
+    return {s * (static_cast<Long>(p.x) - static_cast<Long>(q.x)), s * (static_cast<Long>(p.y) - static_cast<Long>(q.y)),
+            s * (static_cast<Long>(p.z) - static_cast<Long>(q.z))};
+}
+LongVec cross(const LongVec& a, const LongVec& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+Long dot(const LongVec& a, const LongVec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+LongVec operator*(Long s, const LongVec& a) { return {s * a[0], s * a[1], s * a[2]}; }
+LongVec operator+(const LongVec& a, const LongVec& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Long norm(const LongVec& a) { return std::sqrt(dot(a, a)); }
+
+}  // namespace
+
+BallSearch::BallSearch(const std::vector<Vec3>& points) : originals_(&points), order_(points.size()) {
+    double largest = 0;
+    for (const Vec3& p : points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    if (largest > 0) scale_ = std::ldexp(1.0, -std::ilogb(largest) - 1);
+    std::iota(order_.begin(), order_.end(), 0U);
+    std::size_t nodes = 1;
+    for (std::size_t n = points.size(); n > kLeaf; n = n - n / 2) nodes = 2 * nodes + 1;
+    axes_.assign(nodes, 0);
+    cuts_.assign(nodes, 0);
+    build(0, order_.size(), 0);
+    points_.reserve(points.size());
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    root_ = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    for (const std::uint32_t v : order_) {
+        points_.push_back(scale_ * points[v]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            root_.low[k] = std::min(root_.low[k], coordinate(points_.back(), k));
+            root_.high[k] = std::max(root_.high[k], coordinate(points_.back(), k));
+        }
+    }
+}
+
+void BallSearch::build(std::size_t begin, std::size_t end, std::size_t node) {
+    if (end - begin <= kLeaf) return;
+    Vec3 low = (*originals_)[order_[begin]], high = low;
+    for (std::size_t i = begin; i < end; ++i) {
+        const Vec3& p = (*originals_)[order_[i]];
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    const Vec3 size = high - low;
+    const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    axes_[node] = static_cast<std::uint8_t>(axis);
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end),
+                     [&](std::uint32_t p, std::uint32_t q) { return coordinate((*originals_)[p], axis) < coordinate((*originals_)[q], axis); });
+    cuts_[node] = scale_ * coordinate((*originals_)[order_[middle]], axis);
+    build(begin, middle, 2 * node + 1);
+    build(middle, end, 2 * node + 2);
+}
+
+// The coefficients are computed in long double. Every difference has a relative error of one rounding; A and each component of N are
+// sums of at most 12 products of at most 6 rounded factors, so 64 roundings of the sum of absolute products (a_scale, n_scale bound
+// it) are more than enough. Rounding them to double, subtracting p - a, and evaluating f cost at most 8 roundings of double relative
+// to A |q|^2 and to |N_k q_k|, which are folded into a_low and n_error.
+Ball BallSearch::finish(const Vec3& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const {
+    Ball ball;
+    ball.base = scale_ * base;
+    ball.a = static_cast<double>(a);
+    const Long a_error = 64 * kLongUnit * a_scale;
+    ball.a_low = static_cast<double>(std::max(Long{0}, (a - a_error) * (1 - 16 * static_cast<Long>(kUnit))));
+    for (std::size_t k = 0; k < 3; ++k) {
+        ball.n[k] = static_cast<double>(n[k]);
+        ball.n_error[k] = static_cast<double>(64 * kLongUnit * n_scale) + 16 * kUnit * std::abs(ball.n[k]);
+    }
+    ball.radius_squared = static_cast<double>(dot(n, n) / (4 * a * a));
+    return ball;
+}
+
+Ball BallSearch::circumball(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
+    const LongVec u = difference(b, a, scale_), v = difference(c, a, scale_), w = difference(d, a, scale_);
+    const LongVec vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
+    const Long uu = dot(u, u), vv = dot(v, v), ww = dot(w, w), product = norm(u) * norm(v) * norm(w);
+    return finish(a, dot(u, vw), uu * vw + vv * wu + ww * uv, product, product * (norm(u) + norm(v) + norm(w)));
+}
+
+Ball BallSearch::equatorial_ball(const Vec3& a, const Vec3& b, const Vec3& c) const {
+    const LongVec u = difference(b, a, scale_), v = difference(c, a, scale_), n = cross(u, v);
+    const Long uu = dot(u, u), vv = dot(v, v), product = uu * vv;
+    return finish(a, dot(n, n), uu * cross(v, n) + vv * cross(n, u), product, product * (norm(u) + norm(v)));
+}
+
+Ball BallSearch::diametral_ball(const Vec3& a, const Vec3& b) const {
+    const LongVec u = difference(b, a, scale_);
+    return finish(a, 1, u, 1, norm(u));
+}
+
+bool BallSearch::excludes(const Ball& ball, const Box& box) {
+    const std::array<double, 3> base{ball.base.x, ball.base.y, ball.base.z};
+    double lowest = 0, slack = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        // Rounding of the interval's ends: relative to their size, covered by the roundings in a_low and n_error.
+        const double low = box.low[k] - base[k], high = box.high[k] - base[k];
+        const auto parabola = [&](double x) { return (ball.a_low * x - ball.n[k]) * x; };
+        double least = std::min(parabola(low), parabola(high));
+        const double bottom = ball.a_low > 0 ? ball.n[k] / (2 * ball.a_low) : 0;
+        if (ball.a_low > 0 && low < bottom && bottom < high) least = -ball.n[k] * bottom / 2;
+        lowest += least;
+        // The bottom's own rounding and that of the sum: relative to the terms, of which n x is the larger where f is near 0.
+        slack += (ball.n_error[k] + 16 * kUnit * std::abs(ball.n[k])) * std::max(std::abs(low), std::abs(high));
+    }
+    return lowest > slack;
+}
+
+bool BallSearch::excludes(const Ball& ball, const Vec3& point) {
+    const Vec3 q = point - ball.base;
+    const double f = ball.a_low * squared_norm(q) - (ball.n[0] * q.x + ball.n[1] * q.y + ball.n[2] * q.z);
+    const double slack = 2 * (ball.n_error[0] * std::abs(q.x) + ball.n_error[1] * std::abs(q.y) + ball.n_error[2] * std::abs(q.z));
+    return f > slack;
+}
+
+double BallSearch::depth(const Ball& ball, std::uint32_t vertex) const {
+    const LongVec q = difference((*originals_)[vertex], (1 / scale_) * ball.base, scale_);
+    const Long a = static_cast<Long>(ball.a);
+    const Long f = a * dot(q, q) - (static_cast<Long>(ball.n[0]) * q[0] + static_cast<Long>(ball.n[1]) * q[1] + static_cast<Long>(ball.n[2]) * q[2]);
+    return static_cast<double>(-f / (a * static_cast<Long>(ball.radius_squared)));
+}
+
+}  // namespace wellmesh::certifying

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which mesh vertices may lie inside a ball? A kd-tree prunes by rounded arithmetic with proven error bounds; what it cannot
+// exclude, an exact predicate decides.
+//
+// A ball about the circumcentre of a simplex with corner a is written without division, in q = p - a, as
+//     inside  <=>  f(q) = A |q|^2 - N . q < 0,        centre = a + N / (2 A),  A > 0.
+// For the tetrahedron A = det(u, v, w) and N = |u|^2 v x w + |v|^2 w x u + |w|^2 u x v; for the equatorial ball of a triangle with
+// normal n = u x v, A = |n|^2 and N = |u|^2 v x n + |v|^2 n x u; for the diametral ball of an edge A = 1 and N = u. So balls of almost
+// flat simplices, whose centres no double holds, are searched as well as others: f is a sum of one parabola a coordinate, and its
+// minimum over a box is the sum of three minima over intervals.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "wellmesh/vec3.hpp"
+
+namespace wellmesh::certifying {
+
+/// f as above in the search's scaled coordinates, with bounds on the errors of its coefficients. Made by BallSearch only.
+struct Ball {
+    Vec3 base{};
+    double a = 0;
+    std::array<double, 3> n{};
+    std::array<double, 3> n_error{};  ///< of each component, rounding of later evaluations included
+    double a_low = 0;                 ///< at most A; 0 when not even its sign is sure: then nothing is pruned by distance
+    double radius_squared = 0;        ///< |N|^2 / (4 A^2), rounded
+};
+
+class BallSearch {
+public:
+    explicit BallSearch(const std::vector<Vec3>& points);
+
+    [[nodiscard]] Ball circumball(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
+    [[nodiscard]] Ball equatorial_ball(const Vec3& a, const Vec3& b, const Vec3& c) const;
+    [[nodiscard]] Ball diametral_ball(const Vec3& a, const Vec3& b) const;
+
+    /// Calls visit(vertex) for a superset of the vertices strictly inside the ball, until it returns true. @return whether it did.
+    template <class Visit>
+    bool any_in(const Ball& ball, Visit&& visit) const {
+        return !order_.empty() && search(ball, 0, order_.size(), 0, root_, visit);
+    }
+
+    /// By how much the vertex is inside, as a fraction of the squared radius: 1 - |p - centre|^2 / R^2, rounded (64 bits of mantissa
+    /// where long double has them).
+    [[nodiscard]] double depth(const Ball& ball, std::uint32_t vertex) const;
+
+private:
+    struct Box {
+        std::array<double, 3> low, high;
+    };
+    static constexpr std::size_t kLeaf = 8;
+
+    [[nodiscard]] Ball finish(const Vec3& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const;
+    void build(std::size_t begin, std::size_t end, std::size_t node);
+    [[nodiscard]] static bool excludes(const Ball& ball, const Box& box);
+    [[nodiscard]] static bool excludes(const Ball& ball, const Vec3& point);
+
+    template <class Visit>
+    bool search(const Ball& ball, std::size_t begin, std::size_t end, std::size_t node, const Box& box, Visit& visit) const {
+        if (end - begin <= kLeaf) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (!excludes(ball, points_[i]) && visit(order_[i])) return true;
+            return false;
+        }
+        const std::size_t middle = begin + (end - begin) / 2, axis = axes_[node];
+        const double cut = cuts_[node];
+        Box near = box, far = box;
+        near.high[axis] = far.low[axis] = cut;
+        std::size_t near_begin = begin, near_end = middle, near_node = 2 * node + 1, far_begin = middle, far_end = end, far_node = 2 * node + 2;
+        if (coordinate(ball.base, axis) > cut) {  // the corner's side first: what is inside is mostly near the simplex
+            std::swap(near, far);
+            std::swap(near_begin, far_begin), std::swap(near_end, far_end), std::swap(near_node, far_node);
+        }
+        if (!excludes(ball, near) && search(ball, near_begin, near_end, near_node, near, visit)) return true;
+        return !excludes(ball, far) && search(ball, far_begin, far_end, far_node, far, visit);
+    }
+    [[nodiscard]] static double coordinate(const Vec3& p, std::size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+    double scale_ = 1;                 // power of two: tree coordinates are at most 1, so no fourth power under- or overflows
+    const std::vector<Vec3>* originals_;
+    std::vector<std::uint32_t> order_;  // a node's points are contiguous, its first half before its cut
+    std::vector<Vec3> points_;          // scaled, in this order
+    std::vector<std::uint8_t> axes_;    // of each inner node, heap numbering
+    std::vector<double> cuts_;          // scaled: a coordinate of the first half is at most this, of the second at least
+    Box root_{};
+};
+
+}  // namespace wellmesh::certifying

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certificate, claim by claim. Shares core/, predicates/ and the shape measures with the generator, nothing else.
+#include "wellmesh/certificate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "certify/mesh_faces.hpp"
+#include "certify/plc_claims.hpp"
+#include "certify/shape_claims.hpp"
+#include "certify/space_claims.hpp"
+#include "certify/suspect_mesh.hpp"
+#include "core/vec3_math.hpp"
+#include "predicates/exact_range.hpp"
+#include "quality/tet_shape.hpp"
+
+namespace wellmesh {
+namespace {
+
+using namespace certifying;
+
+Claim claim_finite(const TetMesh& mesh) {
+    ClaimBuilder claim("finite_coordinates", "Every coordinate is finite and within the range in which predicates are exact.");
+    claim.checked(mesh.vertices.size());
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+        if (!in_exact_range(flush_to_exact_range(mesh.vertices[v])))
+            claim.violated(EntityKind::vertex, v + 1, mesh.vertices[v], [&] { return fmt::format("vertex {} is at {}", v + 1, text_of(mesh.vertices[v])); });
+    return claim.decided();
+}
+
+/// Vertex numbers, and lengths of arrays that belong together.
+Claim claim_numbers(const TetMesh& mesh) {
+    ClaimBuilder claim("numbers_in_range", "Every tetrahedron, triangle and edge names existing vertices, and every array has the right length.");
+    const auto look = [&](const auto& elements, EntityKind kind) {
+        claim.checked(elements.size());
+        for (std::size_t i = 0; i < elements.size(); ++i)
+            if (std::any_of(elements[i].begin(), elements[i].end(), [&](std::uint32_t v) { return v >= mesh.vertices.size(); }))
+                claim.violated(kind, i + 1, Vec3{}, [&] { return fmt::format("{} {} names a vertex beyond the last, {}", to_string(kind), i + 1, mesh.vertices.size()); });
+    };
+    look(mesh.tets, EntityKind::tetrahedron);
+    look(mesh.subfaces, EntityKind::triangle);
+    look(mesh.subsegments, EntityKind::edge);
+    const auto length = [&](std::size_t have, std::size_t want, const char* what) {
+        if (have != 0 && have != want) claim.violated(EntityKind::file, 0, Vec3{}, [&] { return fmt::format("{} {} for {} elements", have, what, want); });
+    };
+    length(mesh.tet_regions.size(), mesh.tets.size(), "region references");
+    length(mesh.vertex_carriers.size(), mesh.vertices.size(), "vertex carriers");
+    length(mesh.subface_facets.size(), mesh.subfaces.size(), "facet references");
+    length(mesh.subface_markers.size(), mesh.subfaces.size(), "facet markers");
+    length(mesh.subsegment_segments.size(), mesh.subsegments.size(), "segment references");
+    Claim result = claim.decided();
+    if (result.witness) result.witness->where.reset();
+    return result;
+}
+
+Claim claim_positive(const SuspectMesh& mesh) {
+    ClaimBuilder claim("positive_tets", "Every tetrahedron is positively oriented and has a volume.");
+    claim.checked(mesh.tet_count());
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        if (mesh.positive(t)) continue;
+        claim.violated(EntityKind::tetrahedron, t + 1, mesh.tet_centroid(t), [&] {
+            const auto& v = mesh.mesh().tets[t];
+            const bool flat = orient3d(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) == Sign::zero;
+            return fmt::format("vertices {} {} {} {} make {} tetrahedron", v[0] + 1, v[1] + 1, v[2] + 1, v[3] + 1, flat ? "a flat" : "an inverted");
+        });
+    }
+    return claim.decided();
+}
+
+Claim claim_distinct_vertices(const SuspectMesh& mesh) {
+    ClaimBuilder claim("distinct_vertices", "No two vertices are at one place.");
+    claim.checked(mesh.vertex_count());
+    const std::vector<Vec3>& points = mesh.points();
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return lexicographically_less(points[a], points[b]) || (points[a] == points[b] && a < b); });
+    std::uint32_t first = 0;
+    for (std::size_t i = 1; i < order.size(); ++i) {
+        if (points[order[i]] != points[order[i - 1]]) {
+            first = static_cast<std::uint32_t>(i);
+            continue;
+        }
+        claim.violated(EntityKind::vertex, order[i] + std::uint64_t{1}, points[order[i]], [&] { return fmt::format("vertex {} is where vertex {} is", order[i] + 1, order[first] + 1); });
+    }
+    return claim.decided();
+}
+
+Claim claim_used_vertices(const SuspectMesh& mesh) {
+    ClaimBuilder claim("used_vertices", "Every vertex belongs to a tetrahedron.");
+    claim.checked(mesh.vertex_count());
+    std::vector<bool> used(mesh.vertex_count(), false);
+    for (const auto& tet : mesh.mesh().tets)
+        for (const std::uint32_t v : tet) used[v] = true;
+    for (std::size_t v = 0; v < used.size(); ++v)
+        if (!used[v]) claim.violated(EntityKind::vertex, v + 1, mesh.points()[v], [&] { return fmt::format("vertex {} belongs to none", v + 1); });
+    return claim.decided();
+}
+
+/// Every tetrahedron has four faces, every interior face two tetrahedra, every boundary face one.
+Claim claim_conservation(const SuspectMesh& mesh, const FaceSurvey& faces) {
+    ClaimBuilder claim("face_balance", "Twice the interior faces and the boundary faces are four times the tetrahedra.");
+    claim.checked(faces.faces);
+    const std::uint64_t left = 2 * faces.interior_faces + faces.boundary_faces, right = 4 * std::uint64_t{mesh.tet_count()};
+    if (left != right) claim.violated(EntityKind::file, 0, Vec3{}, [] { return std::string("the balance is not even"); });
+    claim.note(fmt::format("2 * {} + {} against 4 * {}", faces.interior_faces, faces.boundary_faces, mesh.tet_count()));
+    Claim result = claim.decided();
+    if (result.witness) result.witness->where.reset();
+    return result;
+}
+
+void measure_regions(const SuspectMesh& mesh, Certificate& certificate) {
+    struct Sum {
+        std::uint64_t tets = 0;
+        long double volume = 0;
+    };
+    std::map<std::int32_t, Sum> sums;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const auto& v = mesh.mesh().tets[t];
+        Sum& sum = sums[mesh.region(t)];
+        ++sum.tets;
+        sum.volume += static_cast<long double>(six_volumes(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])));
+    }
+    for (const auto& [region, sum] : sums) certificate.regions.push_back({region, sum.tets, static_cast<double>(sum.volume / 6), std::nullopt});
+}
+
+bool broken(const Claim& claim) { return claim.state == Claim::State::refuted; }
+
+void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& options, const Plc* plc, Certificate& certificate) {
+    auto& claims = certificate.claims;
+    const Claim positive = claim_positive(mesh), distinct = claim_distinct_vertices(mesh), used = claim_used_vertices(mesh);
+    FaceSurvey faces = survey_faces(mesh);
+    const bool faces_in_order = !broken(positive) && !broken(faces.face_sharing) && !broken(faces.opposite_sides);
+    const Claim disjoint = claim_disjoint(mesh, faces.constraints, faces_in_order);
+    claims.insert(claims.end(), {positive, faces.face_sharing, faces.opposite_sides, faces.distinct_tets, disjoint, claim_conservation(mesh, faces), distinct, used,
+                                 faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh)});
+    {
+        const BallSearch search(mesh.points());
+        const GabrielFindings subfaces = claim_gabriel_subfaces(mesh, search, faces.constraints);
+        const bool by_faces = faces_in_order && disjoint.state == Claim::State::proven && faces.locally_not_delaunay == 0 && !broken(used) && subfaces.touched_hull_faces == 0;
+        claims.push_back(claim_delaunay(mesh, search, by_faces));
+        claims.push_back(subfaces.claim);
+        claims.push_back(claim_gabriel_subsegments(mesh, search, find_constraint_segments(mesh, faces.constraints, options.flat_angle_rad)));
+    }
+    measure_regions(mesh, certificate);
+    append_plc_claims(mesh, faces.constraints, options, plc, certificate);
+    append_shape_claims(mesh, faces.constraints, options, certificate);
+}
+
+/// The other claims need coordinates to compute with and vertices to look up.
+bool usable(const TetMesh& mesh, Certificate& certificate) {
+    certificate.claims.push_back(claim_finite(mesh));
+    certificate.claims.push_back(claim_numbers(mesh));
+    if (mesh.tets.empty()) {
+        Claim none = unchecked("has_tets", "The mesh has a tetrahedron.", "it has none");
+        none.state = Claim::State::refuted;
+        none.violations = 1;
+        certificate.claims.push_back(std::move(none));
+    }
+    return certificate.proven();
+}
+
+}  // namespace
+
+Certificate certify(const TetMesh& mesh, const CertifyOptions& options, const Plc* plc) {
+    Certificate certificate;
+    if (usable(mesh, certificate)) {
+        append_geometric_claims(SuspectMesh(mesh), options, plc, certificate);
+        return certificate;
+    }
+    // The names of all the others, from a mesh of one tetrahedron, so that readers of a report find every claim.
+    TetMesh stand_in;
+    stand_in.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    stand_in.tets = {{0, 1, 2, 3}};
+    Certificate names;
+    append_geometric_claims(SuspectMesh(stand_in), {}, nullptr, names);
+    for (const Claim& c : names.claims) certificate.claims.push_back(unchecked(c.name, c.statement, "the mesh has unusable numbers or coordinates, or no tetrahedron"));
+    return certificate;
+}
+
+void measure_shape(const TetMesh& mesh, Certificate& certificate) {
+    Certificate scratch;
+    if (!usable(mesh, scratch)) return;
+    const SuspectMesh suspect(mesh);
+    measure_shapes(suspect, survey_faces(suspect).constraints, certificate);
+}
+
+}  // namespace wellmesh

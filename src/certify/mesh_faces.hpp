@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The faces of the mesh, found by sorting: who shares what, and which faces are constraints.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "certify/suspect_mesh.hpp"
+
+namespace wellmesh::certifying {
+
+struct FaceSurvey {
+    std::uint64_t faces = 0, interior_faces = 0, boundary_faces = 0;  ///< distinct; of two or more, and of exactly one tetrahedron
+    /// Of exactly two positive tetrahedra: the apex of one is strictly inside the circumsphere of the other.
+    std::uint64_t locally_not_delaunay = 0;
+    std::uint64_t two_sided_faces = 0;             ///< of exactly two tetrahedra, looked at for `opposite_sides`
+    std::vector<ConstraintTriangle> constraints;   ///< ascending by vertices, each triangle once
+    Claim face_sharing, opposite_sides, distinct_tets, listed_subfaces_exist;
+};
+
+/// O(n log n) time; about 50 bytes a tetrahedron of scratch memory, freed on return.
+[[nodiscard]] FaceSurvey survey_faces(const SuspectMesh& mesh);
+
+/// Edges where constraint triangles meet other than as two that are flat together, and all listed ones; ascending, each once.
+///
+/// Two triangles at an edge are flat together if they bend by less than `flat_angle` radians, or by less than 32 roundings of the
+/// largest coordinate seen from the lower of their heights over the edge (rounded Steiner points bend a facet that much).
+struct ConstraintSegment {
+    Edge v{};                      ///< ascending
+    std::uint32_t listed = kNone;  ///< lowest number in TetMesh::subsegments
+};
+[[nodiscard]] std::vector<ConstraintSegment> find_constraint_segments(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, double flat_angle);
+
+/// Edges, ascending and without repetition, of tetrahedra, both ends of which are `wanted` (one flag a vertex).
+[[nodiscard]] std::vector<Edge> edges_between(const SuspectMesh& mesh, const std::vector<bool>& wanted);
+
+/// Listed edges that no tetrahedron has.
+[[nodiscard]] Claim claim_listed_subsegments_exist(const SuspectMesh& mesh);
+
+}  // namespace wellmesh::certifying

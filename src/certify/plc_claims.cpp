@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certify/plc_claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "certify/plc_surface.hpp"
+#include "certify/triangle_tree.hpp"
+#include "core/vec3_math.hpp"
+#include "predicates/exact_range.hpp"
+
+namespace wellmesh::certifying {
+namespace {
+
+constexpr std::array<std::array<const char*, 2>, 6> kStatements{{
+    {"plc_distance", "No constraint triangle leaves the facets of the PLC."},
+    {"plc_area", "The constraint triangles have the area of the PLC's facets."},
+    {"plc_vertices", "Every vertex of a facet of the PLC is a vertex of the mesh."},
+    {"plc_segments", "Every segment of the PLC is a chain of mesh edges."},
+    {"plc_isolated_vertices", "Every vertex of the PLC that is on no facet is a vertex of the mesh."},
+    {"region_volumes", "Every region has the volume of its cells of the PLC."},
+}};
+
+ClaimBuilder builder(std::size_t which) { return {kStatements[which][0], kStatements[which][1]}; }
+
+double area_of(const Corners& t) { return norm(cross(t[1] - t[0], t[2] - t[0])) / 2; }
+Vec3 centroid_of(const Corners& t) { return t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0])); }
+
+/// Mesh vertices by place.
+class VertexFinder {
+public:
+    explicit VertexFinder(const std::vector<Vec3>& points) : points_(points), order_(points.size()) {
+        std::iota(order_.begin(), order_.end(), 0U);
+        std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return lexicographically_less(points[a], points[b]); });
+    }
+    [[nodiscard]] bool has(const Vec3& p) const {
+        const auto it = std::lower_bound(order_.begin(), order_.end(), p, [&](std::uint32_t v, const Vec3& q) { return lexicographically_less(points_[v], q); });
+        return it != order_.end() && points_[*it] == p;
+    }
+
+private:
+    const std::vector<Vec3>& points_;
+    std::vector<std::uint32_t> order_;
+};
+
+class PlcComparison {
+public:
+    PlcComparison(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, const PlcSurface& surface)
+        : mesh_(mesh), constraints_(triangles), surface_(surface), tolerance_(options.tolerance * surface.diagonal), relative_tolerance_(options.tolerance) {
+        std::vector<Corners> all, hull;
+        all.reserve(triangles.size());
+        for (const ConstraintTriangle& t : triangles) {
+            all.push_back({mesh.point(t.v[0]), mesh.point(t.v[1]), mesh.point(t.v[2])});
+            if (t.on_hull) hull.push_back(all.back());
+        }
+        covered_ = TriangleTree(std::move(all));
+        hull_ = TriangleTree(std::move(hull));
+    }
+
+    Claim distance() const {
+        ClaimBuilder claim = builder(0);
+        claim.checked(constraints_.size());
+        double worst = 0, worst_vertex = 0;
+        std::uint64_t far_vertices = 0;
+        std::uint32_t hint = 0;
+        const double rounding = 4 * std::numeric_limits<double>::epsilon() * mesh_.largest_coordinate();
+        std::vector<bool> seen(mesh_.vertex_count(), false);
+        for (std::size_t i = 0; i < constraints_.size(); ++i) {
+            const ConstraintTriangle& t = constraints_[i];
+            const auto& [a, b, c] = covered_.triangles()[i];
+            const std::array<Vec3, 7> probes{a, b, c, a + 0.5 * (b - a), b + 0.5 * (c - b), c + 0.5 * (a - c), centroid_of({a, b, c})};
+            double off = 0;
+            std::size_t where = 0;
+            for (std::size_t k = 0; k < probes.size(); ++k) {
+                const auto nearest = surface_.triangles.nearest(probes[k], hint);
+                hint = nearest.triangle;
+                if (nearest.distance > off) off = nearest.distance, where = k;
+                if (k >= 3 || seen[t.v[k]]) continue;
+                seen[t.v[k]] = true;
+                far_vertices += nearest.distance > rounding;
+                worst_vertex = std::max(worst_vertex, nearest.distance);
+            }
+            worst = std::max(worst, off);
+            if (off > tolerance_)
+                claim.violated(EntityKind::triangle, t.listed == kNone ? 0 : t.listed + std::uint64_t{1}, probes[where], [&] {
+                    return fmt::format("triangle {} {} {} is {:.3g} away from the PLC, {:.3g} of its diagonal", t.v[0] + 1, t.v[1] + 1, t.v[2] + 1, off, off / surface_.diagonal);
+                });
+        }
+        claim.note(fmt::format("largest distance {:.3g}, {:.3g} of the diagonal, tolerance {:g}", worst, worst / surface_.diagonal, relative_tolerance_));
+        claim.note(fmt::format("of a vertex {:.3g}; {} vertices are more than 4 ulp of the largest coordinate away", worst_vertex, far_vertices));
+        return claim.decided();
+    }
+
+    Claim area() const {
+        ClaimBuilder claim = builder(1);
+        claim.checked(surface_.facets.size());
+        long double wanted = 0, removed = 0, present = 0;
+        std::optional<std::uint32_t> uncovered;
+        const auto& triangles = surface_.triangles.triangles();
+        for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+            const Vec3 c = centroid_of(triangles[i]);
+            const bool off = !near_constraint(c);
+            const bool counts = !off || inside(c);
+            (counts ? wanted : removed) += static_cast<long double>(area_of(triangles[i]));
+            if (off && counts && !uncovered) uncovered = i;
+        }
+        for (const Corners& t : covered_.triangles()) present += static_cast<long double>(area_of(t));
+        const long double error = std::abs(present - wanted) / wanted;
+        const auto allowed = static_cast<long double>(1e3 * relative_tolerance_);
+        if (!(error <= allowed)) {
+            const std::uint32_t facet = uncovered ? surface_.facets[*uncovered] : 0;
+            const Vec3 where = uncovered ? centroid_of(triangles[*uncovered]) : mesh_.point(constraints_.front().v[0]);
+            claim.violated(EntityKind::facet, uncovered ? facet + std::uint64_t{1} : 0, where, [&] {
+                return uncovered ? fmt::format("facet {} is not covered at {}", facet + 1, text_of(where)) : std::string("the areas differ");
+            });
+        }
+        claim.note(fmt::format("PLC {:.12g}, mesh {:.12g}, relative difference {:.3g}, tolerance {:.3g}; outside the mesh {:.6g}", static_cast<double>(wanted), static_cast<double>(present),
+                               static_cast<double>(error), static_cast<double>(allowed), static_cast<double>(removed)));
+        return claim.decided();
+    }
+
+    Claim vertices(bool isolated, std::uint32_t first_number) const {
+        ClaimBuilder claim = builder(isolated ? 4 : 2);
+        const VertexFinder finder(mesh_.points());
+        for (const std::uint32_t v : isolated ? surface_.other_vertices : surface_.facet_vertices) {
+            const Vec3& p = surface_.points[v];
+            claim.checked(1);
+            if (!finder.has(p) && (near_constraint(p) || inside(p)))
+                claim.violated(EntityKind::vertex, std::uint64_t{v} + first_number, p, [&] { return fmt::format("PLC vertex {} at {} is missing", v + first_number, text_of(p)); });
+        }
+        return claim.decided();
+    }
+
+    Claim segments() const;
+    Claim region_volumes(std::vector<RegionVolume>& regions) const;
+
+private:
+    struct OnEdge {
+        std::uint32_t edge = 0;
+        double at = 0;  ///< position along it, from 0 to 1
+        std::uint32_t vertex = 0;
+        friend bool operator<(const OnEdge& a, const OnEdge& b) { return std::tie(a.edge, a.at, a.vertex) < std::tie(b.edge, b.at, b.vertex); }
+    };
+    [[nodiscard]] std::vector<OnEdge> vertices_on_edges() const;
+
+    [[nodiscard]] bool near_constraint(const Vec3& p) const { return !constraints_.empty() && covered_.nearest(p).distance <= tolerance_; }
+    /// A point on a hull edge in every direction counts as inside.
+    [[nodiscard]] bool inside(const Vec3& p) const { return hull_.encloses(p).value_or(true); }
+
+    const SuspectMesh& mesh_;
+    const std::vector<ConstraintTriangle>& constraints_;
+    const PlcSurface& surface_;
+    double tolerance_, relative_tolerance_;
+    TriangleTree covered_, hull_;
+};
+
+std::vector<PlcComparison::OnEdge> PlcComparison::vertices_on_edges() const {
+    std::vector<Box3> boxes;
+    const Vec3 slack{tolerance_, tolerance_, tolerance_};
+    for (const PlcEdge& e : surface_.edges) {
+        const std::array<Vec3, 2> ends{surface_.points[e.a], surface_.points[e.b]};
+        Box3 box = Box3::of(ends.data(), 2);
+        boxes.push_back({box.low - slack, box.high + slack});
+    }
+    const BoxTree tree(std::move(boxes));
+    std::vector<OnEdge> result;
+    for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) {
+        const Vec3& p = mesh_.point(v);
+        tree.any_meeting({p, p}, [&](std::uint32_t i) {
+            const Vec3& a = surface_.points[surface_.edges[i].a];
+            const Vec3& b = surface_.points[surface_.edges[i].b];
+            // The ends count by place, not by distance; nothing else does near them.
+            if (p == a || p == b) {
+                result.push_back({i, p == a ? 0.0 : 1.0, v});
+                return false;
+            }
+            const double length = squared_norm(b - a), at = dot(p - a, b - a) / length;
+            if (at > 0 && at < 1 && squared_norm((p - a) - at * (b - a)) <= tolerance_ * tolerance_) result.push_back({i, at, v});
+            return false;
+        });
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+}
+
+Claim PlcComparison::segments() const {
+    ClaimBuilder claim = builder(3);
+    claim.checked(surface_.edges.size());
+    const std::vector<OnEdge> on_edges = vertices_on_edges();
+    std::vector<bool> wanted(mesh_.vertex_count(), false);
+    for (const OnEdge& o : on_edges) wanted[o.vertex] = true;
+    const std::vector<Edge> mesh_edges = edges_between(mesh_, wanted);
+    const auto joined = [&](std::uint32_t v, std::uint32_t w) { return std::binary_search(mesh_edges.begin(), mesh_edges.end(), Edge{std::min(v, w), std::max(v, w)}); };
+    // How far to look for the next vertex of a chain: others may lie within the tolerance of the segment without being on it.
+    constexpr std::size_t kLookAhead = 16;
+    auto begin = on_edges.begin();
+    for (std::uint32_t e = 0; e < surface_.edges.size(); ++e) {
+        const auto end = std::find_if(begin, on_edges.end(), [&](const OnEdge& o) { return o.edge != e; });
+        const auto n = static_cast<std::size_t>(end - begin);
+        std::vector<bool> reached(n, false);
+        std::size_t farthest = 0;
+        bool complete = false;
+        for (std::size_t i = 0; i < n; ++i) {
+            const OnEdge& o = begin[static_cast<std::ptrdiff_t>(i)];
+            if (o.at == 0) reached[i] = true;
+            for (std::size_t j = i; j-- > 0 && i - j <= kLookAhead && !reached[i];) reached[i] = reached[j] && joined(begin[static_cast<std::ptrdiff_t>(j)].vertex, o.vertex);
+            if (reached[i]) farthest = i;
+            complete = complete || (reached[i] && o.at == 1);
+        }
+        if (!complete) {
+            const Vec3 &a = surface_.points[surface_.edges[e].a], &b = surface_.points[surface_.edges[e].b], middle = a + 0.5 * (b - a);
+            if (near_constraint(middle) || inside(middle)) {
+                const Vec3 where = n > 0 && reached[farthest] ? mesh_.point(begin[static_cast<std::ptrdiff_t>(farthest)].vertex) : a;
+                claim.violated(EntityKind::segment, std::uint64_t{e} + 1, where, [&] {
+                    return fmt::format("from {} to {}: no mesh edge leads on from {}", text_of(a), text_of(b), text_of(where));
+                });
+            }
+        }
+        begin = end;
+    }
+    return claim.decided();
+}
+
+Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
+    ClaimBuilder claim = builder(5);
+    struct Sum {
+        long double volume = 0, area = 0;
+    };
+    std::map<std::int32_t, Sum> sums;
+    const auto& triangles = surface_.triangles.triangles();
+    const Vec3 origin = triangles.front()[0];
+    std::uint32_t hint = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const Corners& t = triangles[i];
+        const auto nearest = covered_.nearest(centroid_of(t), hint);
+        hint = nearest.triangle;
+        if (nearest.distance > tolerance_) continue;  // not a boundary of what is meshed; plc_area says so if it is inside
+        const ConstraintTriangle& c = constraints_[nearest.triangle];
+        if (!c.is_face) continue;
+        const auto& [p, q, r] = covered_.triangles()[nearest.triangle];
+        const bool same_way = dot(cross(q - p, r - p), cross(t[1] - t[0], t[2] - t[0])) > 0;
+        using LongVec = std::array<long double, 3>;
+        const auto from_origin = [&](const Vec3& x) {
+            return LongVec{static_cast<long double>(x.x) - static_cast<long double>(origin.x), static_cast<long double>(x.y) - static_cast<long double>(origin.y),
+                           static_cast<long double>(x.z) - static_cast<long double>(origin.z)};
+        };
+        const LongVec a = from_origin(t[0]), b = from_origin(t[1]), d = from_origin(t[2]);
+        const long double cone = (a[0] * (b[1] * d[2] - b[2] * d[1]) + a[1] * (b[2] * d[0] - b[0] * d[2]) + a[2] * (b[0] * d[1] - b[1] * d[0])) / 6;
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (c.tets[side] == kNone) continue;
+            // Side 0 is where c's normal points to: there the triangle's outward normal is the opposite one.
+            const bool outward = (side == 0) != same_way;
+            Sum& sum = sums[mesh_.region(c.tets[side])];
+            sum.volume += outward ? cone : -cone;
+            sum.area += static_cast<long double>(area_of(t));
+        }
+    }
+    for (RegionVolume& r : regions) {
+        const Sum& sum = sums[r.region];
+        r.plc_volume = static_cast<double>(sum.volume);
+        claim.checked(1);
+        const double allowed = static_cast<double>(sum.area) * tolerance_ + 1e-12 * std::abs(r.volume), difference = std::abs(r.volume - *r.plc_volume);
+        if (!(difference <= allowed))
+            claim.violated(EntityKind::region, static_cast<std::uint64_t>(std::max(r.region, 0)), origin, [&] {
+                return fmt::format("region {} has volume {:.12g}, the PLC's cells have {:.12g}: a difference of {:.3g}, allowed is {:.3g}", r.region, r.volume, *r.plc_volume, difference, allowed);
+            });
+    }
+    claim.note("allowed difference: surface area times distance tolerance, and 1e-12 of the volume");
+    return claim.decided();
+}
+
+}  // namespace
+
+void append_plc_claims(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, const Plc* plc, Certificate& certificate) {
+    const auto give_up = [&](const std::string& reason) {
+        for (const auto& [name, statement] : kStatements) certificate.claims.push_back(unchecked(name, statement, reason));
+    };
+    if (plc == nullptr) return give_up("no PLC given");
+    const PlcReading reading = read_surface(*plc, options.flat_angle_rad, options.tolerance);
+    if (!reading.surface) return give_up(reading.problem);
+    if (triangles.empty()) return give_up("the mesh has no constraint triangle");
+    const PlcComparison comparison(mesh, triangles, options, *reading.surface);
+    certificate.claims.push_back(comparison.distance());
+    certificate.claims.push_back(comparison.area());
+    certificate.claims.push_back(comparison.vertices(false, plc->first_number));
+    certificate.claims.push_back(comparison.segments());
+    certificate.claims.push_back(comparison.vertices(true, plc->first_number));
+    certificate.claims.push_back(comparison.region_volumes(certificate.regions));
+}
+
+}  // namespace wellmesh::certifying

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Does the mesh fill the PLC, with its facets, segments and vertices? All distances are rounded; tolerances are relative to the PLC's diagonal.
+#pragma once
+
+#include <vector>
+
+#include "certify/mesh_faces.hpp"
+#include "certify/suspect_mesh.hpp"
+#include "wellmesh/certificate.hpp"
+#include "wellmesh/plc.hpp"
+
+namespace wellmesh::certifying {
+
+/// Appends plc_distance, plc_area, plc_vertices, plc_segments, plc_isolated_vertices and region_volumes, and sets plc_volume of the regions.
+///
+/// What the mesh need not have: parts of the PLC that are neither near a constraint triangle nor inside the mesh (they bound cells that are
+/// not filled only). Volumes: the mesh's region is the sum of its tetrahedra; the PLC's is the divergence theorem over those triangles of
+/// the PLC's facets that have the region on one side only, where the side is that of the constraint triangle nearest to the
+/// triangle's centroid. The two sums share no term.
+/// @param plc  nullptr: the claims are appended as not checked.
+void append_plc_claims(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, const Plc* plc, Certificate& certificate);
+
+}  // namespace wellmesh::certifying

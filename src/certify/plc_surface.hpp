@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The geometry of a PLC as the certifier sees it, computed without src/validation.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "certify/triangle_tree.hpp"
+#include "wellmesh/plc.hpp"
+
+namespace wellmesh::certifying {
+
+struct PlcEdge {
+    std::uint32_t a = 0, b = 0;  ///< PLC vertices
+    std::uint32_t facet = 0;     ///< first facet that has it, or kNone for an entry of Plc::segments
+};
+
+struct PlcSurface {
+    std::vector<Vec3> points;                ///< the PLC's vertices; coordinates too small for exact predicates became zero
+    TriangleTree triangles;                  ///< cover the facets
+    std::vector<std::uint32_t> facets;       ///< of each triangle, its facet
+    std::vector<std::uint32_t> facet_vertices, other_vertices;  ///< used by facets; by none. Of vertices at one place, the first
+    /// Edges that a conforming mesh must have: entries of Plc::segments, and polygon edges, except those at which exactly two triangles, of
+    /// different facets, are flat together: a mesher may have merged the two.
+    std::vector<PlcEdge> edges;
+    double diagonal = 0;                     ///< of the bounding box of all vertices
+};
+
+struct PlcReading {
+    std::optional<PlcSurface> surface;
+    std::string problem;  ///< why there is none
+};
+
+/// @param flat_angle  radians. @param tolerance  input units: triangles that bend by less than 4 tolerances over the lower of their heights
+///                    are flat together, too.
+[[nodiscard]] PlcReading read_surface(const Plc& plc, double flat_angle, double relative_tolerance);
+
+}  // namespace wellmesh::certifying

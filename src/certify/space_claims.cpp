@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certify/space_claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "certify/triangle_tree.hpp"
+#include "core/vec3_math.hpp"
+
+namespace wellmesh::certifying {
+namespace {
+
+using Tet = std::array<std::uint32_t, 4>;
+
+bool has(const Tet& tet, std::uint32_t v) { return v == tet[0] || v == tet[1] || v == tet[2] || v == tet[3]; }
+
+/// Is `other` on or beyond the outer side of a face of the positive tetrahedron `tet`?
+bool beyond_a_face(const SuspectMesh& mesh, const Tet& tet, const Tet& other) {
+    for (const auto& f : kFaceCorners) {
+        const Triangle face{tet[f[0]], tet[f[1]], tet[f[2]]};
+        if (std::all_of(other.begin(), other.end(), [&](std::uint32_t v) {
+                if (v == face[0] || v == face[1] || v == face[2]) return true;
+                // Seen from the opposite corner the face turns counter-clockwise, so that corner is on the positive side: outer is negative.
+                return mesh.predicates().orient3d(mesh.point(face[0]), mesh.point(face[1]), mesh.point(face[2]), mesh.point(v)) != Sign::positive;
+            }))
+            return true;
+    }
+    return false;
+}
+
+std::uint64_t number(std::size_t index) { return std::uint64_t{index} + 1; }
+
+}  // namespace
+
+// Convex bodies have disjoint interiors iff a plane separates them weakly. The planes that do so for two polytopes form a cone; where
+// together they span space, the cone is pointed, and its extreme rays are planes through three of the corners. So it is enough to try
+// those.
+bool overlap(const SuspectMesh& mesh, std::size_t tet, std::size_t other) {
+    const Tet &a = mesh.mesh().tets[tet], &b = mesh.mesh().tets[other];
+    if (mesh.positive(tet) && beyond_a_face(mesh, a, b)) return false;
+    if (mesh.positive(other) && beyond_a_face(mesh, b, a)) return false;
+    std::array<std::uint32_t, 8> corners{};
+    const auto middle = std::copy(a.begin(), a.end(), corners.begin());
+    const auto end = std::copy_if(b.begin(), b.end(), middle, [&](std::uint32_t v) { return !has(a, v); });
+    for (auto i = corners.begin(); i != end; ++i)
+        for (auto j = i + 1; j != end; ++j)
+            for (auto k = j + 1; k != end; ++k) {
+                // bits: some corner of a (1, 2) or b (4, 8) is on the negative (1, 4) or positive (2, 8) side
+                int seen = 0;
+                const auto look = [&](const Tet& corners_of, int negative, int positive) {
+                    for (const std::uint32_t v : corners_of) {
+                        if (v == *i || v == *j || v == *k) continue;
+                        const Sign s = mesh.predicates().orient3d(mesh.point(*i), mesh.point(*j), mesh.point(*k), mesh.point(v));
+                        seen |= s == Sign::negative ? negative : s == Sign::positive ? positive : 0;
+                    }
+                };
+                look(a, 1, 2);
+                if (seen == 3 || seen == 0) continue;  // 0: the three are collinear, as a is not flat
+                look(b, 4, 8);
+                if (seen == (1 | 8) || seen == (2 | 4)) return false;
+            }
+    return true;
+}
+
+Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order) {
+    ClaimBuilder claim("disjoint_tets", "No two tetrahedra overlap.");
+    std::vector<std::uint32_t> at_hull;
+    for (const ConstraintTriangle& t : triangles)
+        if (t.on_hull) at_hull.push_back(t.tets[t.tets[0] == kNone ? 1 : 0]);
+    std::sort(at_hull.begin(), at_hull.end());
+    at_hull.erase(std::unique(at_hull.begin(), at_hull.end()), at_hull.end());
+    const auto box_of = [&](std::size_t t) {
+        std::array<Vec3, 4> p;
+        for (std::size_t i = 0; i < 4; ++i) p[i] = mesh.point(mesh.mesh().tets[t][i]);
+        return Box3::of(p.data(), 4);
+    };
+    const auto flat = [&](std::size_t t) {
+        const Tet& v = mesh.mesh().tets[t];
+        return !mesh.positive(t) && mesh.predicates().orient3d(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) == Sign::zero;
+    };
+    std::erase_if(at_hull, flat);
+    std::vector<Box3> boxes;
+    boxes.reserve(at_hull.size());
+    for (const std::uint32_t t : at_hull) boxes.push_back(box_of(t));
+    const BoxTree tree(std::move(boxes));
+    std::uint64_t pairs = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        std::uint32_t partner = kNone;
+        // Each pair of two tetrahedra at the hull is met from both sides: both overlap.
+        const bool found = tree.any_meeting(box_of(t), [&](std::uint32_t i) {
+            if (at_hull[i] == t) return false;
+            ++pairs;
+            partner = at_hull[i];
+            return !flat(t) && overlap(mesh, t, partner);
+        });
+        if (found) claim.violated(EntityKind::tetrahedron, number(t), mesh.tet_centroid(t), [&] { return fmt::format("overlaps tetrahedron {}", partner + 1); });
+    }
+    claim.checked(mesh.tet_count());
+    if (claim.violations() > 0) claim.note("only overlaps with tetrahedra at the hull are counted");
+    return faces_in_order ? claim.decided() : claim.undecided("without sound faces only overlaps at the hull can be found");
+}
+
+Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool proven_by_faces) {
+    ClaimBuilder claim("delaunay", "No vertex lies strictly inside the circumsphere of a tetrahedron.");
+    std::uint64_t positive = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) positive += mesh.positive(t);
+    claim.checked(positive);
+    if (positive < mesh.tet_count()) claim.note(fmt::format("{} inverted or flat tetrahedra have no circumsphere to look at", mesh.tet_count() - positive));
+    if (proven_by_faces) return claim.decided();
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        if (!mesh.positive(t)) continue;
+        const Tet& v = mesh.mesh().tets[t];
+        const Vec3 &a = mesh.point(v[0]), &b = mesh.point(v[1]), &c = mesh.point(v[2]), &d = mesh.point(v[3]);
+        const Ball ball = search.circumball(a, b, c, d);
+        std::uint32_t intruder = kNone;
+        const bool found = search.any_in(ball, [&](std::uint32_t q) {
+            if (has(v, q)) return false;
+            intruder = q;
+            return mesh.predicates().insphere(a, b, c, d, mesh.point(q)) == Sign::positive;
+        });
+        if (found)
+            claim.violated(EntityKind::tetrahedron, number(t), mesh.tet_centroid(t), [&] {
+                return fmt::format("vertex {} at {} is inside its circumsphere, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)), search.depth(ball, intruder));
+            });
+    }
+    return claim.decided();
+}
+
+GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles) {
+    ClaimBuilder claim("gabriel_subfaces", "No vertex lies inside the equatorial sphere of a constraint triangle (on the hull, between regions, or listed).");
+    claim.checked(triangles.size());
+    std::uint64_t touched_hull_faces = 0, touched = 0;
+    for (const ConstraintTriangle& t : triangles) {
+        const Vec3 &a = mesh.point(t.v[0]), &b = mesh.point(t.v[1]), &c = mesh.point(t.v[2]);
+        const Ball ball = search.equatorial_ball(a, b, c);
+        if (!(ball.a > 0)) continue;  // collinear corners span no sphere; such a triangle is no face of a positive tetrahedron
+        std::uint32_t intruder = kNone;
+        bool inside = false;
+        const bool encroached = search.any_in(ball, [&](std::uint32_t q) {
+            if (q == t.v[0] || q == t.v[1] || q == t.v[2]) return false;
+            if (side_of_equatorial_sphere(a, b, c, mesh.point(q)) != Sign::positive) return false;
+            inside = true;
+            intruder = q;
+            return search.depth(ball, q) > kGabrielMargin;
+        });
+        touched_hull_faces += inside && t.on_hull;
+        touched += inside && !encroached;
+        if (encroached)
+            claim.violated(EntityKind::triangle, t.listed == kNone ? 0 : number(t.listed), mesh.centroid(t.v.data(), 3), [&] {
+                return fmt::format("vertex {} at {} is inside the equatorial sphere of {} {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
+                                   t.v[0] + 1, t.v[1] + 1, t.v[2] + 1, search.depth(ball, intruder));
+            });
+    }
+    if (touched > 0) claim.note(fmt::format("{} more have a vertex inside by less than {:g} of the squared radius", touched, kGabrielMargin));
+    return {claim.decided(), touched_hull_faces};
+}
+
+Claim claim_gabriel_subsegments(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintSegment>& segments) {
+    ClaimBuilder claim("gabriel_subsegments", "No vertex lies inside the diametral sphere of a constraint edge (where constraint triangles bend or meet, or listed).");
+    claim.checked(segments.size());
+    std::uint64_t touched = 0;
+    for (const ConstraintSegment& s : segments) {
+        const Vec3 &a = mesh.point(s.v[0]), &b = mesh.point(s.v[1]);
+        if (a == b) continue;
+        const Ball ball = search.diametral_ball(a, b);
+        std::uint32_t intruder = kNone;
+        bool inside = false;
+        const bool encroached = search.any_in(ball, [&](std::uint32_t q) {
+            if (q == s.v[0] || q == s.v[1] || side_of_diametral_sphere(a, b, mesh.point(q)) != Sign::positive) return false;
+            inside = true;
+            intruder = q;
+            return search.depth(ball, q) > kGabrielMargin;
+        });
+        touched += inside && !encroached;
+        if (encroached)
+            claim.violated(EntityKind::edge, s.listed == kNone ? 0 : number(s.listed), mesh.centroid(s.v.data(), 2), [&] {
+                return fmt::format("vertex {} at {} is inside the diametral sphere of {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)), s.v[0] + 1,
+                                   s.v[1] + 1, search.depth(ball, intruder));
+            });
+    }
+    if (touched > 0) claim.note(fmt::format("{} more have a vertex inside by less than {:g} of the squared radius", touched, kGabrielMargin));
+    return claim.decided();
+}
+
+}  // namespace wellmesh::certifying

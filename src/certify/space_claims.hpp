@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Claims about how tetrahedra and vertices lie in space: no overlaps, Delaunay, Gabriel.
+//
+// Why looking at faces can be enough. Let every tetrahedron be positive, no face have more than two, and two at a face lie on opposite
+// sides of it.
+//
+// (1) If two tetrahedra overlap, then some tetrahedron with a hull face overlaps another one. The number w(x) of tetrahedra that
+//     contain a generic point x changes only across hull faces, and is 0 far away. Take a generic path from a point with w >= 2 to
+//     infinity, and the last hull-face crossing before which w >= 2 and after which w <= 1. On the near side two tetrahedra A, B share
+//     points next to the crossing; not both go on beyond it, so one of them has a hull face there, and it overlaps the other.
+//     Hence `disjoint_tets` compares only tetrahedra with a hull face with all others.
+//
+// (2) If moreover no two overlap, every interior face is locally Delaunay (neither apex strictly inside the other's circumsphere), every
+//     vertex is used, and no vertex is strictly inside the equatorial sphere of a hull face, then no vertex is strictly inside any
+//     circumsphere. Suppose that p were, inside that of t. Walk from a point in t to p along a generic segment. While the walk leaves
+//     through interior faces, p stays strictly inside the circumspheres met: beyond a locally Delaunay face the ball of the tetrahedron
+//     behind it contains that of the one before. If the walk leaves tau through a hull face F, then tau's apex is on or outside F's
+//     equatorial sphere, so the part of tau's ball beyond F is inside the equatorial ball of F, and so is p: excluded. So the walk ends at
+//     p in a tetrahedron tau. p is none of its corners (they are on the sphere). A tetrahedron that uses p would overlap tau or a
+//     neighbour of it, unless p is on a hull face, or on an edge of one, without being its corner: then p is strictly inside its
+//     equatorial sphere, excluded.
+//     Hence `delaunay` is proven by the faces where these premises hold; otherwise every circumball is searched.
+#pragma once
+
+#include <vector>
+
+#include "certify/ball_search.hpp"
+#include "certify/mesh_faces.hpp"
+#include "certify/suspect_mesh.hpp"
+
+namespace wellmesh::certifying {
+
+/// No two tetrahedra have a common interior point; exact, see (1).
+/// @param faces_in_order  the premises of (1) hold: otherwise a clean search proves nothing.
+[[nodiscard]] Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order);
+
+/// No vertex strictly inside the circumsphere of a positive tetrahedron; exact and global. Counts tetrahedra with at least one.
+/// @param proven_by_faces  the premises of (2) hold.
+[[nodiscard]] Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool proven_by_faces);
+
+/// A vertex inside by less than this fraction of the squared radius is not counted as encroaching, only mentioned: input vertices that
+/// are cocircular but for the rounding of their coordinates are beyond the reach of any mesh. The referee's margin.
+inline constexpr double kGabrielMargin = 1e-12;
+
+struct GabrielFindings {
+    Claim claim;
+    std::uint64_t touched_hull_faces = 0;  ///< with a vertex strictly inside, however little
+};
+[[nodiscard]] GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles);
+[[nodiscard]] Claim claim_gabriel_subsegments(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintSegment>& segments);
+
+/// Exact: do the tetrahedra, neither of them flat, have a common interior point?
+[[nodiscard]] bool overlap(const SuspectMesh& mesh, std::size_t tet, std::size_t other);
+
+}  // namespace wellmesh::certifying

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certify/suspect_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/vec3_math.hpp"
+#include "predicates/exact_range.hpp"
+
+namespace wellmesh::certifying {
+
+SuspectMesh::SuspectMesh(const TetMesh& mesh) : mesh_(mesh) {
+    if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& p) { return in_exact_range(p); })) {
+        flushed_ = mesh.vertices;
+        for (Vec3& p : flushed_) p = flush_to_exact_range(p);
+    }
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Vec3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+    for (const Vec3& p : points()) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        largest_coordinate_ = std::max({largest_coordinate_, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
+    if (!points().empty()) predicates_ = PredicateFilter(high - low);
+    positive_.resize(mesh.tets.size());
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+        const auto& v = mesh.tets[t];
+        positive_[t] = predicates_.orient3d(point(v[0]), point(v[1]), point(v[2]), point(v[3])) == Sign::positive;
+    }
+}
+
+Vec3 SuspectMesh::centroid(const std::uint32_t* v, std::size_t n) const {
+    Vec3 offset{};
+    for (std::size_t i = 1; i < n; ++i) offset = offset + (point(v[i]) - point(v[0]));
+    return point(v[0]) + (1 / static_cast<double>(n)) * offset;
+}
+
+ClaimBuilder::ClaimBuilder(std::string name, std::string statement) {
+    claim_.name = std::move(name);
+    claim_.statement = std::move(statement);
+}
+
+void ClaimBuilder::note(const std::string& text) {
+    if (!notes_.empty()) notes_ += "; ";
+    notes_ += text;
+}
+
+Claim ClaimBuilder::decided() const {
+    Claim claim = claim_;
+    claim.state = claim.violations == 0 ? Claim::State::proven : Claim::State::refuted;
+    if (!notes_.empty()) claim.detail += (claim.detail.empty() ? "" : "; ") + notes_;
+    return claim;
+}
+
+Claim ClaimBuilder::undecided(const std::string& reason) const {
+    Claim claim = decided();
+    if (claim.violations == 0) claim.state = Claim::State::not_checked;
+    claim.detail += (claim.detail.empty() ? "" : "; ") + reason;
+    return claim;
+}
+
+Claim unchecked(std::string name, std::string statement, std::string reason) {
+    Claim claim;
+    claim.name = std::move(name);
+    claim.statement = std::move(statement);
+    claim.detail = std::move(reason);
+    return claim;
+}
+
+std::string text_of(const Vec3& p) { return fmt::format("({}, {}, {})", p.x, p.y, p.z); }
+
+}  // namespace wellmesh::certifying

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh under test, after its numbers and coordinates were found usable: what all claims share.
+//
+// Nothing here comes from the generator: adjacency is found by sorting faces, orientation by exact predicates.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "predicates/predicates.hpp"
+#include "wellmesh/certificate.hpp"
+#include "wellmesh/tet_mesh.hpp"
+
+namespace wellmesh::certifying {
+
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+using Triangle = std::array<std::uint32_t, 3>;  ///< vertex numbers
+using Edge = std::array<std::uint32_t, 2>;      ///< vertex numbers
+
+/// Face f of a tetrahedron is the triangle of these corners; corner f lies opposite. Seen from corner f, they turn counter-clockwise.
+inline constexpr std::array<std::array<std::size_t, 3>, 4> kFaceCorners{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+/// A triangle that the mesh must not cross: on its hull, between two regions, or listed.
+struct ConstraintTriangle {
+    Triangle v{};                                  ///< ascending
+    std::array<std::uint32_t, 2> tets{kNone, kNone};  ///< on the side that (v1 - v0) x (v2 - v0) points to, and on the other
+    std::uint32_t listed = kNone;                  ///< lowest number in TetMesh::subfaces
+    bool is_face = false;                          ///< false: listed, but no face of the mesh
+    bool on_hull = false;                          ///< face of exactly one tetrahedron
+};
+
+class SuspectMesh {
+public:
+    /// @pre every vertex number is in range, every coordinate finite. Coordinates too small for the predicates to be exact
+    /// (predicates/exact_range.hpp) count as zero.
+    explicit SuspectMesh(const TetMesh& mesh);
+    SuspectMesh(const SuspectMesh&) = delete;
+    SuspectMesh& operator=(const SuspectMesh&) = delete;
+
+    [[nodiscard]] const TetMesh& mesh() const { return mesh_; }
+    [[nodiscard]] std::size_t vertex_count() const { return mesh_.vertices.size(); }
+    [[nodiscard]] std::size_t tet_count() const { return mesh_.tets.size(); }
+    [[nodiscard]] const Vec3& point(std::uint32_t v) const { return points()[v]; }
+    [[nodiscard]] const std::vector<Vec3>& points() const { return flushed_.empty() ? mesh_.vertices : flushed_; }
+    [[nodiscard]] const PredicateFilter& predicates() const { return predicates_; }
+    [[nodiscard]] bool positive(std::size_t tet) const { return positive_[tet]; }
+    [[nodiscard]] std::int32_t region(std::size_t tet) const { return mesh_.tet_regions.empty() ? 0 : mesh_.tet_regions[tet]; }
+    [[nodiscard]] Vec3 centroid(const std::uint32_t* v, std::size_t n) const;
+    [[nodiscard]] Vec3 tet_centroid(std::size_t tet) const { return centroid(mesh_.tets[tet].data(), 4); }
+    [[nodiscard]] double largest_coordinate() const { return largest_coordinate_; }
+
+private:
+    const TetMesh& mesh_;
+    std::vector<Vec3> flushed_;  // empty unless some coordinate had to be
+    PredicateFilter predicates_;
+    std::vector<bool> positive_;
+    double largest_coordinate_ = 0;
+};
+
+// ---- words for claims
+
+/// Counts violations and keeps the first witness, i.e. the one with the lowest number.
+class ClaimBuilder {
+public:
+    ClaimBuilder(std::string name, std::string statement);
+    /// One more violation by the element of this number (from 1; 0: it has none in the file). `detail` is called when it becomes the witness.
+    template <class Detail>
+    void violated(EntityKind kind, std::uint64_t number, const Vec3& where, Detail&& detail) {
+        ++claim_.violations;
+        if (claim_.witness && !(number < claim_.witness->number)) return;
+        claim_.witness = ElementRef{kind, number, where};
+        claim_.detail = detail();
+    }
+    void checked(std::uint64_t n) { claim_.checked += n; }
+    /// Appended to the detail, whatever the outcome.
+    void note(const std::string& text);
+    /// Proven or refuted by the count of violations.
+    [[nodiscard]] Claim decided() const;
+    /// Refuted if there are violations, else not checked, for the reason given.
+    [[nodiscard]] Claim undecided(const std::string& reason) const;
+    [[nodiscard]] std::uint64_t violations() const { return claim_.violations; }
+
+private:
+    Claim claim_;
+    std::string notes_;
+};
+
+/// A claim that could not be looked at.
+[[nodiscard]] Claim unchecked(std::string name, std::string statement, std::string reason);
+
+/// "(0.25, 1, -3)" with as many digits as tell doubles apart.
+[[nodiscard]] std::string text_of(const Vec3& p);
+
+}  // namespace wellmesh::certifying
