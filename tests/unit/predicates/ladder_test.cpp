@@ -15,6 +15,7 @@ TEST(Orient3dLadder, EveryRungAgreesWithTheOracle) {
     EXPECT_EQ(share(counts.at("flat"), Rung::forward_bound), 1) << table(counts);  // zero by its permanent
     EXPECT_EQ(counts.at("flat").zeros, counts.at("flat").cases);
     EXPECT_GT(share(counts.at("small_integers"), Rung::exact_doubles), 0.02) << table(counts);
+    EXPECT_GT(share(counts.at("integers_and_specks"), Rung::exact), 0.02) << table(counts);
     EXPECT_GT(share(counts.at("slanted_plane"), Rung::double_double), 0.4) << table(counts);
     EXPECT_GT(share(counts.at("coplanar_lattice"), Rung::exact), 0.9) << table(counts);
     EXPECT_GT(total(counts, Rung::exact), 10'000U) << table(counts);

@@ -140,19 +140,15 @@ TEST(Perturbation, TriangulatesAGridUniquely) {
     }
 }
 
-/// By hand: with the cube's corners the lexicographically largest, (1, 1, 1), is lifted most, so it is outside of every
-/// sphere through the others; (0, 0, 0) least.
+/// By hand, on the sphere |p| = 3: the lexicographically largest point is lifted most. Replacing it by e keeps the orientation,
+/// so e is below the plane of the lifted corners: inside. Were e, the smallest, lifted most, it would be outside.
 TEST(Perturbation, LargestPointIsLiftedMost) {
-    const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, d{0, 0, 1}, e{1, 1, 1};
-    EXPECT_EQ(insphere(a, b, c, d, e), Sign::zero);
-    EXPECT_EQ(insphere_perturbed(a, b, c, d, e), Sign::negative);
-    // e = (0, 0, 0) below the tetrahedron of the other four: the largest, (1, 1, 1), is a corner; e replaces it on its other side
-    EXPECT_EQ(orient3d(b, c, d, e), Sign::positive);
-    EXPECT_EQ(insphere_perturbed(b, c, d, e, a), Sign::negative);
-    // a face's four corners with one above: the diagonal goes where the rule says, from whichever tetrahedron one asks
-    const Vec3 f{1, 1, 0};
-    ASSERT_EQ(orient3d(a, b, c, d), Sign::positive);
-    EXPECT_EQ(insphere_perturbed(a, b, c, d, f), Sign::negative);
+    const Vec3 a{2, 1, -2}, b{-2, 1, -2}, c{1, -2, -2}, largest{3, 0, 0}, smallest{-3, 0, 0};
+    ASSERT_EQ(orient3d(a, b, c, largest), Sign::positive);
+    ASSERT_EQ(orient3d(a, b, c, smallest), Sign::positive);
+    ASSERT_EQ(insphere(a, b, c, largest, smallest), Sign::zero);
+    EXPECT_EQ(insphere_perturbed(a, b, c, largest, smallest), Sign::positive);
+    EXPECT_EQ(insphere_perturbed(a, b, c, smallest, largest), Sign::negative);
 }
 
 }  // namespace

@@ -66,6 +66,13 @@ inline Quintuple uniform(Random& r) {
 inline Quintuple small_integers(Random& r) {
     return independent(r, [&] { return static_cast<double>(r.integer(-2, 2)); });
 }
+/// Integers, and specks instead of zero: differences round to small integers, which decide wrongly.
+inline Quintuple integers_and_specks(Random& r) {
+    return independent(r, [&] {
+        const int i = r.integer(-1, 1);
+        return i != 0 ? static_cast<double>(i) : std::ldexp(static_cast<double>(r.integer(-1, 1)), -150);
+    });
+}
 inline Quintuple large_integers(Random& r) {
     return independent(r, [&] { return static_cast<double>(r.integer(-1 << 30, 1 << 30)); });
 }
@@ -163,8 +170,9 @@ struct Family {
 };
 
 inline constexpr Family kFamilies[] = {
-    {"uniform", uniform, 0.1},
+    {"uniform", uniform, 0.05},
     {"small_integers", small_integers, 0.12},
+    {"integers_and_specks", integers_and_specks, 0.05},
     {"large_integers", large_integers, 0.05},
     {"powers_of_two", powers_of_two, 0.1},
     {"log_uniform_offsets", log_uniform_offsets, 0.02},
