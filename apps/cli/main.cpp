@@ -32,7 +32,10 @@ void print_error(const MeshError& error) {
     constexpr std::size_t kShown = 20;
     fmt::print(stderr, "wellmesh: {}: {}\n", to_string(error.code()), error.what());
     const auto& offenders = error.offenders();
-    for (std::size_t i = 0; i < std::min(offenders.size(), kShown); ++i) fmt::print(stderr, "  {}\n", describe(offenders[i]));
+    for (std::size_t i = 0; i < std::min(offenders.size(), kShown); ++i) {
+        const bool names_place = offenders[i].kind != EntityKind::file;  // messages about files name the line themselves
+        if (names_place) fmt::print(stderr, "  {}\n", describe(offenders[i]));
+    }
     if (offenders.size() > kShown) fmt::print(stderr, "  and {} more\n", offenders.size() - kShown);
     if (error.code() == ErrorCode::bad_input && error.stage() == Stage::validate)
         fmt::print(stderr, "'wellmesh doctor' lists every defect.\n");

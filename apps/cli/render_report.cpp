@@ -22,8 +22,10 @@ std::string point(const Vec3& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})"
 }  // namespace
 
 std::string describe(const ElementRef& element) {
-    const std::string name = element.kind == EntityKind::file ? fmt::format("line {}", element.number)
-                                                              : fmt::format("{} {}", to_string(element.kind), element.number);
+    const bool is_line = element.kind == EntityKind::file;  // counted from 1; 0 is the file as a whole
+    const std::string name = !is_line              ? fmt::format("{} {}", to_string(element.kind), element.number)
+                             : element.number == 0 ? std::string("file")
+                                                   : fmt::format("line {}", element.number);
     return element.where ? fmt::format("{} at {}", name, point(*element.where)) : name;
 }
 
@@ -69,7 +71,7 @@ std::string render_claims(const Certificate& certificate) {
         const bool checked = claim.state != Claim::State::not_checked;
         table.add({claim.name, to_string(claim.state), checked ? count(claim.violations) : "", checked ? count(claim.checked) : "", claim.statement});
         if (claim.state != Claim::State::refuted) continue;
-        refutations += fmt::format("  {}: {}{}{}\n", claim.name, claim.witness ? describe(*claim.witness) : "", 
+        refutations += fmt::format("  {}: {}{}{}\n", claim.name, claim.witness ? describe(*claim.witness) : "",
                                    claim.witness && !claim.detail.empty() ? ": " : "", claim.detail);
     }
     std::string text = "Certificate\n" + table.str();
@@ -156,8 +158,11 @@ std::string render_diagnosis(const Diagnosis& diagnosis) {
     }
     if (!diagnosis.cells.empty()) {
         TextTable table({{"region", Align::right}, {"meshed"}, {"volume", Align::right}, {"point inside"}});
-        for (const CellSummary& cell : diagnosis.cells)
-            table.add({fmt::format("{}", cell.region), cell.filled ? "yes" : "no", fmt::format("{:.12g}", cell.volume), point(cell.inside)});
+        for (const CellSummary& cell : diagnosis.cells) {
+            const bool bounded = std::isfinite(cell.volume);
+            table.add({fmt::format("{}", cell.region), cell.filled ? "yes" : "no", bounded ? fmt::format("{:.12g}", cell.volume) : "unbounded",
+                       bounded ? point(cell.inside) : ""});
+        }
         text += "Cells\n" + table.str();
     }
     return text;
