@@ -2,10 +2,10 @@
 // Predicates as the library's own loops call them: with a static filter for one bounding box, and with ties broken.
 // Exact for coordinates within exact_range.hpp. Stateless, thread-safe, independent of the order of earlier calls.
 //
-// Symbolic perturbation [DevillersTeillaud03]. Point p_i is lifted to (p_i, |p_i|^2 + eps_i), eps_i > 0, where the
+// Symbolic perturbation [Devillers03]. Point p_i is lifted to (p_i, |p_i|^2 + eps_i), eps_i > 0, where the
 // lexicographically larger of two points has the infinitely larger eps. A triangulation that is Delaunay in this sense is
 // the lower hull of the lifted points, which is unique: it depends on the set of points only, not on their numbers, and all
-// its tetrahedra are free of ties. See perturbation in insphere.cpp for the signs.
+// its tetrahedra are decided without ties. The signs are derived beside break_tie in insphere.cpp.
 #pragma once
 
 #include <cstdint>
