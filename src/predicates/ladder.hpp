@@ -129,6 +129,7 @@ public:
         return std::nullopt;
     }
 
+    /// The last resort. Takes up to 250 kB of stack (equatorial test, optimised build), of which little is ever touched.
     /// @pre find_tails
     [[nodiscard]] Sign exact() const {
         if (!has_tails_) return Formula::value(map<Expansion<1>>([](double h) { return Expansion<1>(h); })).sign();
