@@ -34,7 +34,10 @@ public:
     Random(std::uint64_t stream, std::uint64_t number) : key_(mix64(stream, number)) {}
     std::uint64_t bits() { return mix64(key_, counter_++); }
     double unit() { return unit_double(bits()); }
-    int integer(int low, int high) { return low + static_cast<int>(bits() % static_cast<std::uint64_t>(high - low + 1)); }
+    int integer(int low, int high) {
+        const auto count = static_cast<std::uint64_t>(std::int64_t{high} - low + 1);
+        return static_cast<int>(low + static_cast<std::int64_t>(bits() % count));
+    }
     double sign() { return bits() % 2 == 0 ? 1 : -1; }
     template <class Coordinate>
     Vec3 point(Coordinate coordinate) {
