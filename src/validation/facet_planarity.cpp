@@ -36,7 +36,7 @@ public:
             if (is_polygonal(f)) todo.push_back(f);
         // a split found in one facet concerns all facets with that edge; every round needs a new split, so this ends
         while (!todo.empty()) {
-            EdgeChains chains;
+            EdgeChains chains(input_.points);
             for (const std::uint32_t f : todo) triangulate(f, chains);
             todo = expand(chains);
         }

@@ -19,7 +19,7 @@ using Polygon = std::vector<VertexId>;
 
 class Cleaner {
 public:
-    Cleaner(const Plc& plc, Report& report) : plc_(plc), report_(report) {}
+    Cleaner(const Plc& plc, const Rounding& rounding, Report& report) : plc_(plc), rounding_(rounding), report_(report) {}
 
     CleanInput run() {
         merge_vertices();
@@ -37,6 +37,7 @@ private:
     void add_facet(std::size_t f);
     bool clean_polygon(std::size_t f, const std::vector<std::uint32_t>& stated, Polygon& polygon);
     bool is_collinear(const CleanFacet& facet) const;
+    bool drop_needle(const CleanFacet& facet);
     void drop_degenerate(std::size_t f, const CleanFacet& facet);
     void add_wire(std::size_t s);
     void mend_needles();
@@ -44,6 +45,7 @@ private:
     void report_summaries();
 
     const Plc& plc_;
+    const Rounding& rounding_;
     Report& report_;
     CleanInput out_;
     std::vector<Polygon> needles_;
@@ -132,7 +134,7 @@ void Cleaner::add_facet(std::size_t f) {
         facet.polygons.push_back(std::move(polygon));
     }
     if (corners >= 3 && !is_collinear(facet)) {
-        out_.facets.push_back(std::move(facet));
+        if (!drop_needle(facet)) out_.facets.push_back(std::move(facet));
         return;
     }
     if (collapsed || corners >= 3 || corners == 0) {
@@ -159,6 +161,25 @@ bool Cleaner::is_collinear(const CleanFacet& facet) const {
     for (const Polygon& polygon : facet.polygons)
         for (const VertexId v : polygon)
             if (v != low && v != high && !collinear(out_.points[low.index()], out_.points[high.index()], out_.points[v.index()])) return false;
+    return true;
+}
+
+/// A triangle with an area that is lower than its coordinates can resolve stands for a crack between its longest edge and its other
+/// two; closing the crack moves the surface by less than rounding has. True if it was dropped.
+bool Cleaner::drop_needle(const CleanFacet& facet) {
+    if (facet.polygons.size() != 1 || facet.polygons[0].size() != 3 || !facet.single_triangle) return false;
+    Polygon needle = facet.polygons[0];
+    const auto at = [&](std::size_t i) -> const Vec3& { return out_.points[needle[i % 3].index()]; };
+    std::size_t base = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+        if (squared_distance(at(i), at(i + 1)) > squared_distance(at(base), at(base + 1))) base = i;
+    const Vec3 along = at(base + 1) - at(base), rest = at(base + 2) - at(base);
+    const double length = norm(along);
+    if (norm(cross(along, rest)) > rounding_.contact() * length) return false;
+    // as short as it is low: nothing to close
+    if (!(length > 8 * rounding_.contact()) || !(dot(along, rest) > 0) || !(dot(along, along - rest) > 0)) return false;
+    degenerate_.push_back(report_.facet(facet.source, at(0)));
+    needles_.push_back({needle[base], needle[(base + 2) % 3], needle[(base + 1) % 3]});
     return true;
 }
 
@@ -201,7 +222,7 @@ void Cleaner::mend_needles() {
     for (const CleanFacet& facet : out_.facets)
         for (const Polygon& polygon : facet.polygons)
             for (const VertexId v : polygon) used[v.index()] = 1;
-    EdgeChains chains;
+    EdgeChains chains(out_.points);
     for (const Polygon& n : needles_)
         if (used[n[1].index()]) chains.split(n[0], n[2], n[1]);
     for (CleanFacet& facet : out_.facets) {
@@ -257,7 +278,7 @@ void Cleaner::report_summaries() {
     if (!degenerate_.empty()) {
         const std::size_t n = degenerate_.size();
         report_.add(DefectKind::degenerate_facet, Severity::note, std::move(degenerate_),
-                    fmt::format("{} facets without area were dropped{}", n,
+                    fmt::format("{} facets without area, exactly or but for rounding, were dropped{}", n,
                                 mended_ == 0 ? std::string{} : fmt::format("; {} neighbours of theirs were split at the vertices in between", mended_)),
                     static_cast<double>(n));
     }
@@ -265,10 +286,16 @@ void Cleaner::report_summaries() {
 
 }  // namespace
 
+void EdgeChains::split(VertexId a, VertexId b, VertexId inside) {
+    const Vec3 &p = points_[a.index()], &q = points_[b.index()], &m = points_[inside.index()];
+    const double whole = squared_distance(p, q);
+    if (squared_distance(p, m) < whole && squared_distance(m, q) < whole) inside_.try_emplace(edge_key(a, b), inside);
+}
+
 void EdgeChains::append_between(VertexId a, VertexId b, std::vector<VertexId>& out) const {
     const auto it = inside_.find(edge_key(a, b));
     if (it == inside_.end()) return;
-    const VertexId m = it->second;  // strictly inside: both halves are shorter, so this ends
+    const VertexId m = it->second;  // both parts are shorter, so this ends
     append_between(a, m, out);
     out.push_back(m);
     append_between(m, b, out);
@@ -287,6 +314,6 @@ bool EdgeChains::expand(std::vector<VertexId>& polygon) const {
     return changed;
 }
 
-CleanInput clean_input(const Plc& plc, Report& report) { return Cleaner(plc, report).run(); }
+CleanInput clean_input(const Plc& plc, const Rounding& rounding, Report& report) { return Cleaner(plc, rounding, report).run(); }
 
 }  // namespace wellmesh

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "core/vec3_math.hpp"
 
@@ -13,12 +14,14 @@ namespace {
 class Merger {
 public:
     Merger(const CleanInput& input, const Soup& soup, const EdgeTable& edges, const Plc& plc, const Rounding& rounding)
-        : input_(input), soup_(soup), edges_(edges), plc_(plc), tolerance_(rounding.merging()), sets_(soup.triangles.size()) {}
+        : input_(input), soup_(soup), edges_(edges), plc_(plc), tolerance_(rounding.merging()), sets_(soup.triangles.size()), before_tolerance_(0) {}
 
     FacetGroups run() {
         join_stated_and_exact();
+        before_tolerance_ = sets_;
         collect_sets();
         join_within_tolerance();
+        split_folded();
         return take_groups();
     }
 
@@ -44,6 +47,9 @@ private:
     bool try_join(std::uint32_t a, std::uint32_t b);
     bool four_points_fit(std::uint32_t edge) const;
     FittedPlane fit(const std::vector<VertexId>& vertices) const;
+    void split_folded();
+    std::vector<char> turns(const std::vector<std::uint32_t>& triangles) const;
+    bool is_folded(const Set& set) const;
     FacetGroups take_groups();
 
     const CleanInput& input_;
@@ -51,7 +57,8 @@ private:
     const EdgeTable& edges_;
     const Plc& plc_;
     const double tolerance_;
-    DisjointSets sets_;
+    DisjointSets sets_, before_tolerance_;
+    std::vector<std::uint32_t> set_of_triangle_;  // after folded ones were split: representatives
     std::vector<Candidate> candidates_;
     std::vector<Set> set_of_;  // at representatives
 };
@@ -175,38 +182,101 @@ bool Merger::try_join(std::uint32_t a, std::uint32_t b) {
     return true;
 }
 
+/// For each of a set's triangles, in order: must it be turned to agree with the first across the edges inside the set?
+std::vector<char> Merger::turns(const std::vector<std::uint32_t>& triangles) const {
+    std::unordered_map<std::uint32_t, std::uint32_t> place;
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) place.emplace(triangles[i], i);
+    std::vector<char> turned(triangles.size(), 0), known(triangles.size(), 0);
+    std::vector<std::uint32_t> stack{0};
+    known[0] = 1;
+    while (!stack.empty()) {
+        const std::uint32_t i = stack.back(), t = triangles[i];
+        stack.pop_back();
+        for (std::uint32_t s = 0; s < 3; ++s) {
+            const auto around = edges_.around(edges_.edge_of[3 * t + s]);
+            if (around.size() != 2) continue;
+            const std::uint32_t other = around[0] / 3 == t ? around[1] : around[0];
+            const auto it = place.find(other / 3);
+            if (it == place.end() || known[it->second]) continue;
+            const bool same_direction = soup_.triangles[t].v[s] == soup_.triangles[other / 3].v[other % 3];
+            turned[it->second] = turned[i] != (same_direction ? 1 : 0);
+            known[it->second] = 1;
+            stack.push_back(it->second);
+        }
+    }
+    return turned;
+}
+
+/// Does a triangle that is wider than the tolerance turn the wrong way in the set's plane?
+bool Merger::is_folded(const Set& set) const {
+    const std::vector<char> turned = turns(set.triangles);
+    double front = 0, back = 0;  // heights of the highest triangle on each side
+    for (std::size_t i = 0; i < set.triangles.size(); ++i) {
+        const auto& v = soup_.triangles[set.triangles[i]].v;
+        const Vec3 n = cross(point(v[1]) - point(v[0]), point(v[2]) - point(v[0]));
+        const double longest = std::sqrt(std::max({squared_distance(point(v[0]), point(v[1])), squared_distance(point(v[1]), point(v[2])), squared_distance(point(v[2]), point(v[0]))}));
+        const double height = dot(n, set.plane.normal) / longest * (turned[i] ? -1 : 1);
+        front = std::max(front, height);
+        back = std::max(back, -height);
+    }
+    return std::min(front, back) > tolerance_;
+}
+
+void Merger::split_folded() {
+    set_of_triangle_.resize(soup_.triangles.size());
+    std::vector<char> folded(soup_.triangles.size(), 0);
+    for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t) {
+        const std::uint32_t r = sets_.find(t);
+        if (r == t) folded[r] = is_folded(set_of_[r]);
+        set_of_triangle_[t] = folded[r] ? before_tolerance_.find(t) : r;  // r <= t
+    }
+    std::vector<Set> rebuilt(soup_.triangles.size());
+    for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t)
+        if (folded[sets_.find(t)]) {
+            Set& set = rebuilt[set_of_triangle_[t]];
+            set.triangles.push_back(t);
+            set.vertices.insert(set.vertices.end(), soup_.triangles[t].v.begin(), soup_.triangles[t].v.end());
+        }
+    for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t)
+        if (!rebuilt[t].triangles.empty()) {
+            set_of_[t] = std::move(rebuilt[t]);
+            set_of_[t].plane = fit(set_of_[t].vertices);
+        }
+}
+
 FacetGroups Merger::take_groups() {
     FacetGroups groups;
     groups.group_of.resize(soup_.triangles.size());
+    groups.is_turned.resize(soup_.triangles.size());
     for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t) {
-        const std::uint32_t r = sets_.find(t);
-        if (r == t) {
-            Set& set = set_of_[t];
-            std::sort(set.triangles.begin(), set.triangles.end());
-            std::sort(set.vertices.begin(), set.vertices.end());
-            set.vertices.erase(std::unique(set.vertices.begin(), set.vertices.end()), set.vertices.end());
-            FittedPlane plane = fit(set.vertices);
-            if (plane.residual > tolerance_ && set.plane.residual <= tolerance_) {
-                plane = set.plane;
-                plane.residual = 0;
-                for (const VertexId v : set.vertices) plane.residual = std::max(plane.residual, std::abs(plane.distance_of(point(v))));
-            }
-            const auto& v = soup_.triangles[t].v;
-            Vec3 front = cross(point(v[1]) - point(v[0]), point(v[2]) - point(v[0]));
-            for (const std::uint32_t s : set.triangles) {  // the widest triangle knows best, the first one's turn decides
-                if (soup_.triangles[s].facet != soup_.triangles[t].facet) break;
-                const auto& w = soup_.triangles[s].v;
-                const Vec3 n = cross(point(w[1]) - point(w[0]), point(w[2]) - point(w[0]));
-                if (squared_norm(n) > squared_norm(front)) front = n;
-            }
-            if (dot(plane.normal, front) < 0) plane.flip();
-            groups.group_of[t] = static_cast<std::uint32_t>(groups.planes.size());
-            groups.planes.push_back(plane);
-            groups.triangles.push_back(std::move(set.triangles));
-            groups.vertices.push_back(std::move(set.vertices));
-        } else {
+        const std::uint32_t r = set_of_triangle_[t];
+        if (r != t) {
             groups.group_of[t] = groups.group_of[r];  // r < t
+            continue;
         }
+        Set& set = set_of_[t];
+        std::sort(set.triangles.begin(), set.triangles.end());
+        std::sort(set.vertices.begin(), set.vertices.end());
+        set.vertices.erase(std::unique(set.vertices.begin(), set.vertices.end()), set.vertices.end());
+        FittedPlane plane = fit(set.vertices);
+        if (plane.residual > tolerance_ && set.plane.residual <= tolerance_) {
+            plane = set.plane;
+            plane.residual = 0;
+            for (const VertexId v : set.vertices) plane.residual = std::max(plane.residual, std::abs(plane.distance_of(point(v))));
+        }
+        // the first triangle's turn decides which side is the front, the area vector of all of them where that is
+        const std::vector<char> turned = turns(set.triangles);
+        Vec3 front{};
+        for (std::size_t i = 0; i < set.triangles.size(); ++i) {
+            const auto& v = soup_.triangles[set.triangles[i]].v;
+            front = front + (turned[i] ? -1.0 : 1.0) * cross(point(v[1]) - point(v[0]), point(v[2]) - point(v[0]));
+            groups.is_turned[set.triangles[i]] = turned[i];
+        }
+        if (dot(plane.normal, front) < 0) plane.flip();
+        groups.group_of[t] = static_cast<std::uint32_t>(groups.planes.size());
+        groups.planes.push_back(plane);
+        groups.triangles.push_back(std::move(set.triangles));
+        groups.vertices.push_back(std::move(set.vertices));
     }
     groups.is_segment.resize(edges_.keys.size());
     for (std::size_t e = 0; e < edges_.keys.size(); ++e) {

@@ -203,7 +203,8 @@ bool PlanarTriangulation::is_near(std::uint32_t v, std::uint32_t a, std::uint32_
     const double dx = points_[b][0] - points_[a][0], dy = points_[b][1] - points_[a][1];
     const double px = points_[v][0] - points_[a][0], py = points_[v][1] - points_[a][1];
     const double length2 = dx * dx + dy * dy, along = px * dx + py * dy;
-    if (!(along > 0 && along < length2)) return false;
+    // inside the edge's diametral circle, so that both parts are shorter than the edge and splits end
+    if (!(along > px * px + py * py)) return false;
     return std::abs(dx * py - dy * px) <= on_edge * std::sqrt(length2);
 }
 

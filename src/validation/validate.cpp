@@ -9,11 +9,14 @@
 
 #include "core/check.hpp"
 #include "core/vec3_math.hpp"
+#include "predicates/exact_range.hpp"
 #include "validation/facet_planarity.hpp"
 #include "validation/fill_cells.hpp"
 #include "validation/find_duplicates.hpp"
 #include "validation/find_intersections.hpp"
 #include "validation/merge_coplanar.hpp"
+#include "validation/sharp_features.hpp"
+#include "validation/triangulate_facet.hpp"
 #include "validation/valid_plc.hpp"
 
 namespace wellmesh {
@@ -28,7 +31,8 @@ struct ValidPlcBuilder {
     void run();
     void find_segments();
     void find_facets();
-    void orient_facet(std::uint32_t group, ValidFacet& facet) const;
+    void set_triangles(std::uint32_t group, ValidFacet& facet);
+    void find_open_edges();
     void attach_cells(const CellMap& map);
     void keep_isolated_vertices(const LineQuery& lines, const CellMap& map);
     void compress_vertices();
@@ -50,14 +54,15 @@ void ValidPlcBuilder::run() {
         report.add(DefectKind::empty_input, Severity::error, {}, plc.vertices.empty() ? "the input has no vertices" : "the input has no facets");
         return;
     }
-    input = clean_input(plc, report);
-    for (const Vec3& p : input.points)
-        rounding.largest_coordinate = std::max({rounding.largest_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    for (const Vec3& p : plc.vertices)
+        if (in_exact_range(p)) rounding.largest_coordinate = std::max({rounding.largest_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    input = clean_input(plc, rounding, report);
     soup = make_soup(input, plc, rounding, report);
     edges = make_edge_table(soup.triangles);
     find_intersections(input, soup, report);
     groups = merge_coplanar(input, soup, edges, plc, rounding);
     find_thin_features(input, soup, edges, groups, rounding, report);
+    find_open_edges();
     find_segments();
     find_facets();
     if (report.has_errors()) return;
@@ -67,6 +72,7 @@ void ValidPlcBuilder::run() {
     attach_cells(map);
     keep_isolated_vertices(lines, map);
     compress_vertices();
+    out.acute_features = find_sharp_features(out, rounding, report);
 }
 
 void ValidPlcBuilder::find_segments() {
@@ -112,27 +118,63 @@ void ValidPlcBuilder::find_facets() {
         std::sort(facet.segments.begin(), facet.segments.end());
         facet.segments.erase(std::unique(facet.segments.begin(), facet.segments.end()), facet.segments.end());
         facet.marker = plc.facets[facet.source_facet].marker;
-        orient_facet(g, facet);
+        set_triangles(g, facet);
         out.coplanar_tolerance = std::max(out.coplanar_tolerance, facet.tolerance);
         out.facets.push_back(std::move(facet));
     }
 }
 
-void ValidPlcBuilder::orient_facet(std::uint32_t group, ValidFacet& facet) const {
+/// The group's triangles, turned to agree with the normal. Needles lower than the tolerance may turn the wrong way in the facet's plane;
+/// then the facet gets new triangles over the same vertices and segments.
+void ValidPlcBuilder::set_triangles(std::uint32_t group, ValidFacet& facet) {
     const PlaneProjection project(facet.normal);
+    const auto flat = [&](VertexId v) { return project(input.points[v.index()]); };
+    bool all_turn = true;
     for (const std::uint32_t t : groups.triangles[group]) {
         std::array<VertexId, 3> v = soup.triangles[t].v;
-        const auto at = [&](std::size_t i) { return project(input.points[v[i].index()]); };
-        if (orient2d(at(0), at(1), at(2)) == Sign::negative) std::swap(v[1], v[2]);
+        if (groups.is_turned[t]) std::swap(v[1], v[2]);
+        all_turn = all_turn && orient2d(flat(v[0]), flat(v[1]), flat(v[2])) == Sign::positive;
         facet.triangles.push_back(v);
     }
+    if (all_turn) return;
+    std::vector<Vec3> points;
+    for (const VertexId v : facet.vertices) points.push_back(input.points[v.index()]);
+    const auto number = [&](VertexId v) {
+        return static_cast<std::uint32_t>(std::lower_bound(facet.vertices.begin(), facet.vertices.end(), v) - facet.vertices.begin());
+    };
+    std::vector<std::array<std::uint32_t, 2>> constraints;
+    for (const SegmentId s : facet.segments) constraints.push_back({number(out.segments[s.index()].ends[0]), number(out.segments[s.index()].ends[1])});
+    const FacetTriangulation again = triangulate_facet(points, project, constraints, {}, 0);
+    if (!again.crossings.empty() || !again.coincident.empty() || !again.splits.empty() || again.constraints.size() != constraints.size() || again.triangles.empty()) {
+        report.add(DefectKind::feature_too_thin, Severity::error, {report.facet(facet.source_facet, facet.origin)},
+                   fmt::format("the coplanar triangles around {} near {} overlap within rounding: remove the needles among them",
+                               report.name_facet(facet.source_facet), format_point(facet.origin)));
+        return;
+    }
+    facet.triangles.clear();
+    for (const auto& t : again.triangles) facet.triangles.push_back({facet.vertices[t[0]], facet.vertices[t[1]], facet.vertices[t[2]]});
 }
 
 void ValidPlcBuilder::attach_cells(const CellMap& map) {
     for (std::uint32_t g = 0; g < groups.planes.size(); ++g) {
         const std::uint32_t t = groups.triangles[g].front();
-        const bool turned = out.facets[g].triangles.front() != soup.triangles[t].v;
-        out.facets[g].cells = {CellId{map.cell_of_side[2 * t + (turned ? 1 : 0)]}, CellId{map.cell_of_side[2 * t + (turned ? 0 : 1)]}};
+        const std::uint32_t turned = groups.is_turned[t] ? 1 : 0;
+        out.facets[g].cells = {CellId{map.cell_of_side[2 * t + turned]}, CellId{map.cell_of_side[2 * t + 1 - turned]}};
+    }
+}
+
+/// A surface file must be closed: an edge with one triangle is a hole in it. Facets of a .poly may dangle.
+void ValidPlcBuilder::find_open_edges() {
+    if (plc.fill != FillRule::nonzero_winding) return;
+    for (std::size_t e = 0; e < edges.keys.size(); ++e) {
+        if (edges.around(e).size() != 1) continue;
+        const auto ends = edge_ends(edges.keys[e]);
+        const std::uint32_t a = input.source_vertex[ends[0].index()], b = input.source_vertex[ends[1].index()];
+        const std::uint32_t facet = input.facets[soup.triangles[edges.around(e)[0] / 3].facet].source;
+        report.add(DefectKind::open_edge, Severity::error, {report.vertex(a), report.vertex(b), report.facet(facet)},
+                   fmt::format("the edge from {} at {} to {} at {} bounds only {}: the surface is not closed", report.name_vertex(a),
+                               format_point(input.points[ends[0].index()]), report.name_vertex(b), format_point(input.points[ends[1].index()]),
+                               report.name_facet(facet)));
     }
 }
 
