@@ -21,7 +21,7 @@ void read_header(TextScanner& in) {
     if (kind.starts_with("ST")) kind.remove_prefix(2);
     if (kind.starts_with("C")) kind.remove_prefix(1);
     if (kind.starts_with("N")) kind.remove_prefix(1);
-    if (kind == "4OFF" || kind == "nOFF" || kind == "4nOFF") in.fail(fmt::format("{}: only points of three coordinates are supported", quoted(token)));
+    if (kind == "4OFF" || kind == "nOFF" || kind == "4nOFF") in.fail(fmt::format("{}: only points of three coordinates are supported", quoted_token(token)));
     if (kind != "OFF") in.fail_expected(token, "the word OFF (or COFF, NOFF, STOFF)");
     if (in.at_end()) in.fail("expected the numbers of vertices and faces, but the file ends");
 }

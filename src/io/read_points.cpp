@@ -43,6 +43,7 @@ std::vector<Vec3> read_xyz_points(const SourceFile& source) {
         points.push_back(point);
         in.skip_line();
     }
+    if (!is_stated && points.empty()) in.fail("the file has no points");
     if (is_stated && points.size() != stated)
         in.fail("the file has " + std::to_string(points.size()) + " points, but its first line states " + std::to_string(stated));
     normalise_zeros(points);

@@ -66,7 +66,7 @@ SourceFile read_source(const std::filesystem::path& path) {
     return source;
 }
 
-std::string quoted(std::string_view token) {
+std::string quoted_token(std::string_view token) {
     std::string out = "'";
     for (const char c : token.substr(0, kLongestQuote)) {
         const auto byte = static_cast<unsigned char>(c);

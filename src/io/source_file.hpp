@@ -22,7 +22,7 @@ struct SourceFile {
 [[nodiscard]] SourceFile read_source(const std::filesystem::path& path);
 
 /// A token of the input as messages quote it: non-printing bytes escaped, long ones cut.
-[[nodiscard]] std::string quoted(std::string_view token);
+[[nodiscard]] std::string quoted_token(std::string_view token);
 
 /// "file:line: message" as MeshError{bad_input}; the offender is the file with the line as its number.
 [[noreturn]] void fail_at_line(const SourceFile& source, std::uint64_t line, const std::string& message);

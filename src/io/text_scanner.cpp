@@ -93,7 +93,7 @@ std::uint32_t TextScanner::line32() const {
 }
 
 void TextScanner::fail_expected(std::string_view token, const char* what) const {
-    if (!token.empty()) fail(fmt::format("expected {}, found {}", what, quoted(token)));
+    if (!token.empty()) fail(fmt::format("expected {}, found {}", what, quoted_token(token)));
     fail(fmt::format("expected {}, but the {} ends", what, cursor_ == end_ ? "file" : "line"));
 }
 
@@ -102,8 +102,8 @@ double TextScanner::to_real(std::string_view token, const char* what) const {
     switch (parsed.fault) {
         case NumberFault::none: return parsed.value;
         case NumberFault::not_a_number: fail_expected(token, what);
-        case NumberFault::not_finite: fail(fmt::format("{} is not finite; expected {}", quoted(token), what));
-        case NumberFault::too_large: fail(fmt::format("{} is too large for a double; expected {}", quoted(token), what));
+        case NumberFault::not_finite: fail(fmt::format("{} is not finite; expected {}", quoted_token(token), what));
+        case NumberFault::too_large: fail(fmt::format("{} is too large for a double; expected {}", quoted_token(token), what));
     }
     return 0;
 }
@@ -122,13 +122,13 @@ std::int32_t TextScanner::to_reference(std::string_view token, const char* what)
     const auto parsed = parse_integral_real(token);
     if (!parsed) fail_expected(token, what);
     using Limits = std::numeric_limits<std::int32_t>;
-    if (*parsed < Limits::min() || *parsed > Limits::max()) fail(fmt::format("{} doesn't fit 32 bits; expected {}", quoted(token), what));
+    if (*parsed < Limits::min() || *parsed > Limits::max()) fail(fmt::format("{} doesn't fit 32 bits; expected {}", quoted_token(token), what));
     return static_cast<std::int32_t>(*parsed);
 }
 
 std::size_t TextScanner::to_count(std::string_view token, const char* what, std::size_t least_bytes) const {
     const std::int64_t count = to_integer(token, what);
-    if (count < 0) fail(fmt::format("expected {}, found {}: it cannot be negative", what, quoted(token)));
+    if (count < 0) fail(fmt::format("expected {}, found {}: it cannot be negative", what, quoted_token(token)));
     // The last entity needs no separator after it, hence the extra byte.
     const std::size_t possible = (bytes_left() + 1) / std::max<std::size_t>(least_bytes, 1);
     if (static_cast<std::uint64_t>(count) > possible)

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/text_scanner.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "expect_error.hpp"
+#include "sample_files.hpp"
+
+namespace wellmesh::io {
+namespace {
+
+using testing::expect_error;
+using testing::source_of;
+using Token = std::pair<std::string, std::uint64_t>;
+
+std::vector<Token> tokens(const std::string& text, TextScanner::Syntax syntax = {}) {
+    const SourceFile source = source_of(text);
+    TextScanner in(source, syntax);
+    std::vector<Token> out;
+    for (std::string_view t = in.next(); !t.empty(); t = in.next()) out.emplace_back(std::string(t), in.line());
+    return out;
+}
+
+TEST(TextScanner, CountsLinesOfEveryKind) {
+    const std::vector<Token> expected{{"a", 1}, {"b", 1}, {"c", 2}, {"d", 4}};
+    EXPECT_EQ(tokens("a b\nc\n\nd"), expected);
+    EXPECT_EQ(tokens("a b\r\nc\r\n\r\nd\r\n"), expected);
+    EXPECT_EQ(tokens("a b\rc\r\rd\r"), expected);
+    EXPECT_EQ(tokens("\xef\xbb\xbf a\tb # x y\nc# z\n#\n\v\fd"), expected);
+}
+
+TEST(TextScanner, CommasAndContinuationsOnlyWhereAskedFor) {
+    EXPECT_EQ(tokens("1,2"), (std::vector<Token>{{"1,2", 1}}));
+    EXPECT_EQ(tokens("1,2", {.commas_separate = true}), (std::vector<Token>{{"1", 1}, {"2", 1}}));
+    EXPECT_EQ(tokens("#1 2", {.hash_comments = false}), (std::vector<Token>{{"#1", 1}, {"2", 1}}));
+    const SourceFile source = source_of("f 1 \\\r\n 2\\\n3\nf\\x \\");
+    TextScanner in(source, {.backslash_continues = true});
+    for (const char* const expected : {"f", "1", "2", "3"}) EXPECT_EQ(in.next_on_line(), expected);
+    EXPECT_TRUE(in.next_on_line().empty());
+    EXPECT_EQ(in.line(), 3U);
+    EXPECT_EQ(in.next(), "f\\x");
+    EXPECT_EQ(in.next(), "\\");
+    EXPECT_TRUE(in.next().empty());
+}
+
+TEST(TextScanner, KnowsWhereLinesAndTheFileEnd) {
+    const SourceFile source = source_of("a  rest # of it \nb #c\n \n# d");
+    TextScanner in(source, {});
+    EXPECT_EQ(in.next(), "a");
+    EXPECT_FALSE(in.at_end_of_line());
+    EXPECT_EQ(in.rest_of_line(), "rest # of it");
+    EXPECT_TRUE(in.at_end_of_line());
+    EXPECT_TRUE(in.next_on_line().empty());
+    EXPECT_FALSE(in.at_end());
+    EXPECT_EQ(in.next_on_line(), "b");
+    EXPECT_TRUE(in.at_end());
+    EXPECT_TRUE(in.next().empty());
+}
+
+TEST(TextScanner, ErrorsNameFileLineAndToken) {
+    const SourceFile source = source_of("1\n\n  zwei\n", "some.off");
+    TextScanner in(source, {});
+    EXPECT_EQ(in.real("x"), 1);
+    expect_error(ErrorCode::bad_input, {"some.off:3:", "'zwei'", "a coordinate"}, [&] { in.real("a coordinate"); });
+    expect_error(ErrorCode::bad_input, {"some.off:4:", "a coordinate", "file ends"}, [&] { in.real("a coordinate"); });
+}
+
+TEST(TextScanner, QuotesBinaryAndLongTokensSafely) {
+    EXPECT_EQ(quoted_token(std::string("a\0\xff", 3)), "'a\\x00\\xff'");
+    EXPECT_LT(quoted_token(std::string(100000, 'x')).size(), 60U);
+}
+
+TEST(TextScanner, CountsAreBoundedByTheBytesThatFollow) {
+    const SourceFile fits = source_of("3\n1\n2\n3"), too_many = source_of("4\n1\n2\n3"), negative = source_of("-1"), huge = source_of("99999999999999999999");
+    EXPECT_EQ(TextScanner(fits, {}).count("the number of things", 2), 3U);
+    for (const SourceFile* const source : {&too_many, &negative, &huge})
+        expect_error(ErrorCode::bad_input, {":1:", "the number of things"}, [&] { TextScanner(*source, {}).count("the number of things", 2); });
+}
+
+TEST(TextScanner, ReferencesFitThirtyTwoBits) {
+    const SourceFile source = source_of("-2147483648 2147483647.0 2147483648 1.5");
+    TextScanner in(source, {});
+    EXPECT_EQ(in.integer32("r"), INT32_MIN);
+    EXPECT_EQ(in.integer32("r"), INT32_MAX);
+    expect_error(ErrorCode::bad_input, {"32 bits"}, [&] { in.integer32("r"); });
+    expect_error(ErrorCode::bad_input, {"1.5"}, [&] { in.integer32("r"); });
+}
+
+}  // namespace
+}  // namespace wellmesh::io
