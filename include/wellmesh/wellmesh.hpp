@@ -3,6 +3,7 @@
 #pragma once
 
 #include "wellmesh/certificate.hpp"
+#include "wellmesh/delaunay.hpp"
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/error.hpp"
 #include "wellmesh/generate.hpp"
