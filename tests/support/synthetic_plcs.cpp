@@ -191,6 +191,12 @@ Plc transformed(Plc plc, std::uint64_t rotation_seed, double shift_diagonals, do
         for (double& x : q) x /= std::sqrt(length);
     }
     const double shift = shift_diagonals * scale * diagonal(plc);
+    auto largest = [&] {
+        double c = 0;
+        for (const Vec3& p : plc.vertices) c = std::max({c, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        return c;
+    };
+    const double largest_before = largest();
     auto map = [&](Vec3& p) {
         if (rotation_seed != 0) p = rotate(q, p);
         p = scale * p + Vec3{shift, shift, shift};
@@ -203,6 +209,8 @@ Plc transformed(Plc plc, std::uint64_t rotation_seed, double shift_diagonals, do
         map(r.point);
         r.max_volume *= scale * scale * scale;
     }
+    // the source's rounding moved the vertices by a length, which the shift leaves alone
+    if (largest_before > 0) plc.relative_rounding *= scale * largest_before / largest();
     return plc;
 }
 
