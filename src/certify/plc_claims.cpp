@@ -21,12 +21,14 @@
 namespace wellmesh::certifying {
 namespace {
 
-constexpr std::array<std::array<const char*, 2>, 6> kStatements{{
+constexpr std::array<std::array<const char*, 2>, 8> kStatements{{
     {"plc_distance", "No constraint triangle leaves the facets of the PLC."},
     {"plc_area", "The constraint triangles have the area of the PLC's facets."},
     {"plc_vertices", "Every vertex of a facet of the PLC is a vertex of the mesh."},
     {"plc_segments", "Every segment of the PLC is a chain of mesh edges."},
     {"plc_isolated_vertices", "Every vertex of the PLC that is on no facet is a vertex of the mesh."},
+    {"plc_filled", "No facet of the PLC lies outside the mesh."},
+    {"holes_empty", "No hole seed lies inside the mesh."},
     {"region_volumes", "Every region has the volume of its cells of the PLC."},
 }};
 
@@ -64,6 +66,13 @@ public:
         }
         covered_ = TriangleTree(std::move(all));
         hull_ = TriangleTree(std::move(hull));
+        facet_wanted_.assign(surface.facets.empty() ? 0 : surface.facets.back() + std::size_t{1}, false);
+        for (std::size_t i = 0; i < surface.facets.size(); ++i) {
+            const Vec3 c = centroid_of(surface.triangles.triangles()[i]);
+            const bool near = near_constraint(c);
+            triangles_.push_back(near ? Part::covered : inside(c) ? Part::missing : Part::outside);
+            if (triangles_.back() != Part::outside) facet_wanted_[surface.facets[i]] = true;
+        }
     }
 
     Claim distance() const {
@@ -107,11 +116,8 @@ public:
         std::optional<std::uint32_t> uncovered;
         const auto& triangles = surface_.triangles.triangles();
         for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-            const Vec3 c = centroid_of(triangles[i]);
-            const bool off = !near_constraint(c);
-            const bool counts = !off || inside(c);
-            (counts ? wanted : removed) += static_cast<long double>(area_of(triangles[i]));
-            if (off && counts && !uncovered) uncovered = i;
+            (triangles_[i] == Part::outside ? removed : wanted) += static_cast<long double>(area_of(triangles[i]));
+            if (triangles_[i] == Part::missing && !uncovered) uncovered = i;
         }
         for (const Corners& t : covered_.triangles()) present += static_cast<long double>(area_of(t));
         const long double error = std::abs(present - wanted) / wanted;
@@ -140,10 +146,32 @@ public:
         return claim.decided();
     }
 
+    Claim filled(const Plc& plc) const {
+        ClaimBuilder claim = builder(5);
+        claim.checked(surface_.facets.size());
+        if (!plc.hole_seeds.empty() || plc.fill != FillRule::bounded_cells) return claim.undecided("cells may have been left out on purpose");
+        for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+            if (triangles_[i] != Part::outside) continue;
+            const Vec3 where = centroid_of(surface_.triangles.triangles()[i]);
+            claim.violated(EntityKind::facet, surface_.facets[i] + std::uint64_t{1}, where, [&] { return fmt::format("facet {} is outside at {}", surface_.facets[i] + 1, text_of(where)); });
+        }
+        return claim.decided();
+    }
+
+    Claim holes_empty(const Plc& plc) const {
+        ClaimBuilder claim = builder(6);
+        claim.checked(plc.hole_seeds.size());
+        for (std::size_t i = 0; i < plc.hole_seeds.size(); ++i)
+            if (inside(plc.hole_seeds[i])) claim.violated(EntityKind::region, i + 1, plc.hole_seeds[i], [&] { return fmt::format("hole seed {} at {}", i + 1, text_of(plc.hole_seeds[i])); });
+        return claim.decided();
+    }
+
     Claim segments() const;
     Claim region_volumes(std::vector<RegionVolume>& regions) const;
 
 private:
+    /// What the mesh has where a triangle of the PLC is (by its centroid).
+    enum class Part : std::uint8_t { covered, missing, outside };
     struct OnEdge {
         std::uint32_t edge = 0;
         double at = 0;  ///< position along it, from 0 to 1
@@ -161,6 +189,8 @@ private:
     const PlcSurface& surface_;
     double tolerance_, relative_tolerance_;
     TriangleTree covered_, hull_;
+    std::vector<Part> triangles_;
+    std::vector<bool> facet_wanted_;  ///< some triangle of it is not outside the mesh; facets without triangles may be beyond the end
 };
 
 std::vector<PlcComparison::OnEdge> PlcComparison::vertices_on_edges() const {
@@ -218,7 +248,9 @@ Claim PlcComparison::segments() const {
         }
         if (!complete) {
             const Vec3 &a = surface_.points[surface_.edges[e].a], &b = surface_.points[surface_.edges[e].b], middle = a + 0.5 * (b - a);
-            if (near_constraint(middle) || inside(middle)) {
+            const std::vector<std::uint32_t>& facets = surface_.edges[e].facets;
+            const auto wanted_by = [&](std::uint32_t f) { return f < facet_wanted_.size() && facet_wanted_[f]; };
+            if (std::any_of(facets.begin(), facets.end(), wanted_by) || near_constraint(middle) || inside(middle)) {
                 const Vec3 where = n > 0 && reached[farthest] ? mesh_.point(begin[static_cast<std::ptrdiff_t>(farthest)].vertex) : a;
                 claim.violated(EntityKind::segment, std::uint64_t{e} + 1, where, [&] {
                     return fmt::format("from {} to {}: no mesh edge leads on from {}", text_of(a), text_of(b), text_of(where));
@@ -231,7 +263,7 @@ Claim PlcComparison::segments() const {
 }
 
 Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
-    ClaimBuilder claim = builder(5);
+    ClaimBuilder claim = builder(7);
     struct Sum {
         long double volume = 0, area = 0;
     };
@@ -294,6 +326,8 @@ void append_plc_claims(const SuspectMesh& mesh, const std::vector<ConstraintTria
     certificate.claims.push_back(comparison.vertices(false, plc->first_number));
     certificate.claims.push_back(comparison.segments());
     certificate.claims.push_back(comparison.vertices(true, plc->first_number));
+    certificate.claims.push_back(comparison.filled(*plc));
+    certificate.claims.push_back(comparison.holes_empty(*plc));
     certificate.claims.push_back(comparison.region_volumes(certificate.regions));
 }
 

@@ -11,10 +11,12 @@
 
 namespace wellmesh::certifying {
 
-/// Appends plc_distance, plc_area, plc_vertices, plc_segments, plc_isolated_vertices and region_volumes, and sets plc_volume of the regions.
+/// Appends plc_distance, plc_area, plc_vertices, plc_segments, plc_isolated_vertices, plc_filled, holes_empty
+/// and region_volumes, and sets plc_volume of the regions.
 ///
-/// What the mesh need not have: parts of the PLC that are neither near a constraint triangle nor inside the mesh (they bound cells that are
-/// not filled only). Volumes: the mesh's region is the sum of its tetrahedra; the PLC's is the divergence theorem over those triangles of
+/// What all claims but plc_filled forgive: parts of the PLC that are neither near a constraint triangle nor inside the mesh (they bound only
+/// cells that are not filled). Triangles of facets are judged by their centroids, vertices by themselves, segments by the facets they are on and by
+/// their midpoints. Volumes: the mesh's region is the sum of its tetrahedra; the PLC's is the divergence theorem over those triangles of
 /// the PLC's facets that have the region on one side only, where the side is that of the constraint triangle nearest to the
 /// triangle's centroid. The two sums share no term.
 /// @param plc  nullptr: the claims are appended as not checked.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -109,19 +110,25 @@ void collect_vertices(const Plc& plc, const Places& places, PlcSurface& surface)
 
 void collect_edges(const Plc& plc, const Places& places, double flat_angle, double bend_tolerance, PlcSurface& surface) {
     const EdgeSelection selection(surface, places, flat_angle, bend_tolerance);
-    std::vector<PlcEdge> edges;
+    struct Use {
+        std::uint32_t a, b, facet;
+        auto operator<=>(const Use&) const = default;
+    };
+    std::vector<Use> uses;
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t facet) {
         const auto [low, high] = std::minmax({places.of(a), places.of(b)});
-        if (low != high) edges.push_back({low, high, facet});
+        if (low != high) uses.push_back({low, high, facet});
     };
     for (std::uint32_t f = 0; f < plc.facets.size(); ++f)
         for (const auto& polygon : plc.facets[f].polygons)
             for (std::size_t i = 0; i < polygon.size(); ++i) add(polygon[i], polygon[(i + 1) % polygon.size()], f);
-    std::erase_if(edges, [&](const PlcEdge& e) { return !selection.wanted(e.a, e.b); });
+    std::erase_if(uses, [&](const Use& e) { return !selection.wanted(e.a, e.b); });
     for (const PlcSegment& s : plc.segments) add(s.vertices[0], s.vertices[1], kNone);
-    std::sort(edges.begin(), edges.end(), [](const PlcEdge& e, const PlcEdge& o) { return std::tie(e.a, e.b, e.facet) < std::tie(o.a, o.b, o.facet); });
-    edges.erase(std::unique(edges.begin(), edges.end(), [](const PlcEdge& e, const PlcEdge& o) { return e.a == o.a && e.b == o.b; }), edges.end());
-    surface.edges = std::move(edges);
+    std::sort(uses.begin(), uses.end());
+    for (const Use& u : uses) {
+        if (surface.edges.empty() || surface.edges.back().a != u.a || surface.edges.back().b != u.b) surface.edges.push_back({u.a, u.b, {}});
+        if (u.facet != kNone) surface.edges.back().facets.push_back(u.facet);
+    }
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace wellmesh::certifying {
 
 struct PlcEdge {
     std::uint32_t a = 0, b = 0;  ///< PLC vertices
-    std::uint32_t facet = 0;     ///< first facet that has it, or kNone for an entry of Plc::segments
+    std::vector<std::uint32_t> facets;  ///< that have it as a polygon edge, ascending; none: an entry of Plc::segments only
 };
 
 struct PlcSurface {

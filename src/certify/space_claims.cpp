@@ -23,8 +23,8 @@ bool beyond_a_face(const SuspectMesh& mesh, const Tet& tet, const Tet& other) {
         const Triangle face{tet[f[0]], tet[f[1]], tet[f[2]]};
         if (std::all_of(other.begin(), other.end(), [&](std::uint32_t v) {
                 if (v == face[0] || v == face[1] || v == face[2]) return true;
-                // Seen from the opposite corner the face turns counter-clockwise, so that corner is on the positive side: outer is negative.
-                return mesh.predicates().orient3d(mesh.point(face[0]), mesh.point(face[1]), mesh.point(face[2]), mesh.point(v)) != Sign::positive;
+                // The face turns counter-clockwise seen from outside: outer is positive.
+                return mesh.predicates().orient3d(mesh.point(face[0]), mesh.point(face[1]), mesh.point(face[2]), mesh.point(v)) != Sign::negative;
             }))
             return true;
     }

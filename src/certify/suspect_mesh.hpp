@@ -22,7 +22,7 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 using Triangle = std::array<std::uint32_t, 3>;  ///< vertex numbers
 using Edge = std::array<std::uint32_t, 2>;      ///< vertex numbers
 
-/// Face f of a tetrahedron is the triangle of these corners; corner f lies opposite. Seen from corner f, they turn counter-clockwise.
+/// Face f of a tetrahedron is the triangle of these corners; corner f lies opposite. Seen from outside, they turn counter-clockwise.
 inline constexpr std::array<std::array<std::size_t, 3>, 4> kFaceCorners{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 /// A triangle that the mesh must not cross: on its hull, between two regions, or listed.

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certify/ball_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/rng.hpp"
+#include "core/vec3_math.hpp"
+#include "wellmesh/predicates.hpp"
+
+namespace wellmesh::certifying {
+namespace {
+
+Vec3 random_point(std::uint64_t key) { return {unit_double(mix64(key, 0)), unit_double(mix64(key, 1)), unit_double(mix64(key, 2))}; }
+
+/// Point sets on which rounding matters: a grid (cospherical), a thin layer (huge balls, clusters), far from the origin, tiny.
+std::vector<std::vector<Vec3>> point_sets() {
+    std::vector<std::vector<Vec3>> sets(5);
+    for (std::uint64_t i = 0; i < 300; ++i) {
+        sets[0].push_back(random_point(i));
+        sets[1].push_back({static_cast<double>(i % 7), static_cast<double>(i / 7 % 7), static_cast<double>(i / 49)});
+        Vec3 p = random_point(1000 + i);
+        sets[2].push_back({p.x, p.y, 1e-9 * p.z});
+        sets[3].push_back(p + Vec3{1e6, -1e6, 1e6});
+        sets[4].push_back(1e-40 * p);
+    }
+    return sets;
+}
+
+TEST(BallSearch, FindsEveryVertexInACircumball) {
+    std::uint64_t inside_total = 0, flat = 0;
+    for (const auto& points : point_sets()) {
+        const BallSearch search(points);
+        for (std::uint64_t key = 0; key < 400; ++key) {
+            std::array<Vec3, 4> p;
+            for (std::uint64_t k = 0; k < 4; ++k) p[k] = points[mix64(key, k) % points.size()];
+            const Sign s = orient3d(p[0], p[1], p[2], p[3]);
+            if (s == Sign::zero) continue;
+            if (s == Sign::negative) std::swap(p[0], p[1]);
+            std::set<std::uint32_t> expected, visited;
+            for (std::uint32_t q = 0; q < points.size(); ++q)
+                if (insphere(p[0], p[1], p[2], p[3], points[q]) == Sign::positive) expected.insert(q);
+            search.any_in(search.circumball(p[0], p[1], p[2], p[3]), [&](std::uint32_t q) {
+                visited.insert(q);
+                return false;
+            });
+            for (const std::uint32_t q : expected) ASSERT_TRUE(visited.contains(q)) << key;
+            inside_total += expected.size();
+            flat += visited.size() > 2 * expected.size() + 20;
+        }
+    }
+    EXPECT_GT(inside_total, 10000U);
+    EXPECT_LT(flat, 20U) << "the search does not prune";
+}
+
+TEST(BallSearch, FindsEveryVertexInEquatorialAndDiametralBalls) {
+    std::uint64_t inside_total = 0;
+    for (const auto& points : point_sets()) {
+        const BallSearch search(points);
+        for (std::uint64_t key = 0; key < 400; ++key) {
+            const Vec3 &a = points[mix64(key, 10) % points.size()], &b = points[mix64(key, 11) % points.size()], &c = points[mix64(key, 12) % points.size()];
+            if (a == b) continue;
+            const Ball ball = search.equatorial_ball(a, b, c), segment = search.diametral_ball(a, b);
+            std::set<std::uint32_t> in_ball, in_segment;
+            search.any_in(segment, [&](std::uint32_t q) { return in_segment.insert(q), false; });
+            if (squared_norm(cross(b - a, c - a)) > 0) search.any_in(ball, [&](std::uint32_t q) { return in_ball.insert(q), false; });
+            for (std::uint32_t q = 0; q < points.size(); ++q) {
+                if (side_of_diametral_sphere(a, b, points[q]) == Sign::positive) {
+                    ++inside_total;
+                    ASSERT_TRUE(in_segment.contains(q));
+                    EXPECT_NEAR(search.depth(segment, q), 1 - squared_distance(points[q], a + 0.5 * (b - a)) / (squared_distance(a, b) / 4), 1e-8);
+                }
+                if (squared_norm(cross(b - a, c - a)) > 0 && side_of_equatorial_sphere(a, b, c, points[q]) == Sign::positive) {
+                    ++inside_total;
+                    ASSERT_TRUE(in_ball.contains(q));
+                    EXPECT_GT(search.depth(ball, q), -1e-8);
+                }
+            }
+        }
+    }
+    EXPECT_GT(inside_total, 10000U);
+}
+
+TEST(BallSearch, StopsWhenToldTo) {
+    const std::vector<Vec3> points = point_sets()[0];
+    const BallSearch search(points);
+    int visits = 0;
+    EXPECT_TRUE(search.any_in(search.diametral_ball({0, 0, 0}, {1, 1, 1}), [&](std::uint32_t) { return ++visits == 3; }));
+    EXPECT_EQ(visits, 3);
+    EXPECT_FALSE(BallSearch({}).any_in(search.diametral_ball({0, 0, 0}, {1, 1, 1}), [](std::uint32_t) { return true; }));
+}
+
+}  // namespace
+}  // namespace wellmesh::certifying
