@@ -77,10 +77,10 @@ void BoundaryRefiner::find_encroached(const Cavity& cavity, const Placement& whe
         }
         for (unsigned f = 0; f < 4; ++f) {
             if (!l.facets[f].valid() || on_carrier(l.facets[f])) continue;
-            const TetId other = store.across(t, f).tet();
-            if (t > other && mesh_.triangulation().in_last_cavity(other)) continue;  // seen from there
+            const bool destroyed = mesh_.triangulation().in_last_cavity(store.across(t, f).tet());
+            if (destroyed && t > store.across(t, f).tet()) continue;  // seen from the other side
             const auto fc = store.face_corners(TetFace{t, f});
-            if (side_of_equatorial_sphere(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), p) == Sign::positive)
+            if (destroyed || side_of_equatorial_sphere(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), p) == Sign::positive)
                 faces.push_back({fc, l.facets[f]});
         }
     }
@@ -210,6 +210,10 @@ bool BoundaryRefiner::step() {
         repair_broken();
         return true;
     }
+    if (cells_stale_) {
+        refresh_cells();
+        return true;
+    }
     if (!faces_.empty()) {
         const WaitingFace w = faces_.front();
         faces_.pop_front();
@@ -226,7 +230,12 @@ bool BoundaryRefiner::conform() {
 }
 
 void BoundaryRefiner::drain_segments() {
-    while (!segments_.empty()) step();
+    while (true) {
+        while (!segments_.empty()) step();
+        const std::vector<SegmentId> broken = mesh_.take_broken_segments();
+        if (broken.empty()) return;
+        for (const SegmentId s : broken) queue_chain(s);
+    }
 }
 
 }  // namespace wellmesh

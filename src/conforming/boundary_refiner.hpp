@@ -39,7 +39,7 @@ public:
     bool conform();
     /// Splits at most one subsegment or subface. @return false if none is waiting.
     bool step();
-    [[nodiscard]] bool idle() const { return segments_.empty() && faces_.empty() && !mesh_.has_broken(); }
+    [[nodiscard]] bool idle() const { return segments_.empty() && faces_.empty() && !mesh_.has_broken() && !cells_stale_; }
     [[nodiscard]] std::size_t waiting() const { return segments_.size() + faces_.size(); }
 
     /// Looks for encroached subsegments and subfaces among the new tetrahedra.
@@ -63,6 +63,7 @@ private:
     void recover_segments();
     bool recover_facet(FacetId f);
     void repair_broken();
+    void refresh_cells();
     void drain_segments();
     void inserted(VertexId v);
     void poll_or_throw();
@@ -77,7 +78,7 @@ private:
     Cavity cavity_;
     std::vector<Subsegment> encroached_segments_;
     std::vector<Subface> encroached_faces_;
-    bool conforming_ = false;  // has recover_all finished once?
+    bool cells_stale_ = false;  // facets were recovered since cells were last found
 };
 
 /// Finds the cell of every tetrahedron by flooding from the labelled faces. @throws MeshError{internal_invariant} if the surface leaks.

@@ -114,7 +114,9 @@ void FacetTriangulation::keep_inside(ConformingMesh& mesh) {
         }
         const auto& c = triangles_[largest];
         const Vec3 middle = flat_[c[0]] + (1.0 / 3) * ((flat_[c[1]] - flat_[c[0]]) + (flat_[c[2]] - flat_[c[0]]));
-        inside.push_back(is_inside(middle, mesh) ? 1 : 0);
+        // A rounded point of a boundary segment may lie inside the segment's line: then slivers over that segment close the hull.
+        const bool on_one_segment = mesh.share_segment(vertices_[c[0]], vertices_[c[1]], vertices_[c[2]]);
+        inside.push_back(!on_one_segment && is_inside(middle, mesh) ? 1 : 0);
     }
     std::vector<std::uint32_t> renumbered(triangles_.size(), kNone);
     std::uint32_t kept = 0;

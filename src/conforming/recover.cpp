@@ -35,7 +35,6 @@ void BoundaryRefiner::recover_segments() {
         segments_.push_back({{ends[0], ends[1], SegmentId{i}}, VertexId{}});
     }
     drain_segments();
-    while (mesh_.has_broken()) repair_broken();
 }
 
 /// @return false if points had to be inserted (which may have broken other facets): call again.
@@ -73,7 +72,7 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
 /// Inserts the point, or splits the subsegments that it would encroach. Nothing happens at the place of a vertex.
 void BoundaryRefiner::try_insert_on_facet(FacetId f, const Vec3& wanted, TetId near, const SplitRequest& request) {
     const Placement where = Placement::on_facet(f);
-    if (!mesh_.triangulation().find_conflict_cavity(wanted, near, cavity_)) return;
+    if (!std::isfinite(wanted.x + wanted.y + wanted.z) || !mesh_.triangulation().find_conflict_cavity(wanted, near, cavity_)) return;
     find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
     const std::vector<Subsegment> targets = encroached_segments_;
     if (!targets.empty()) {
@@ -85,19 +84,19 @@ void BoundaryRefiner::try_insert_on_facet(FacetId f, const Vec3& wanted, TetId n
 }
 
 void BoundaryRefiner::repair_broken() {
-    bool changed = false;
-    for (const SegmentId s : mesh_.take_broken_segments()) queue_chain(s);
     drain_segments();
     for (const FacetId f : mesh_.take_broken_facets()) {
-        if (!conforming_) continue;  // recover_all comes to it anyway
         recover_facet(f);
-        changed = true;
+        cells_stale_ = true;
     }
-    if (changed && !mesh_.has_broken() && segments_.empty()) {
-        classify_cells(mesh_);
-        enqueue_all_encroached();
-        if (on_repair) on_repair();
-    }
+}
+
+/// Once everything is recovered: cells may have leaked through what was broken.
+void BoundaryRefiner::refresh_cells() {
+    cells_stale_ = false;
+    classify_cells(mesh_);
+    enqueue_all_encroached();
+    if (on_repair) on_repair();
 }
 
 void BoundaryRefiner::recover_all() {
@@ -107,14 +106,11 @@ void BoundaryRefiner::recover_all() {
     for (std::size_t i = 0; i < mesh_.plc().facets.size(); ++i) todo.push_back(FacetId{i});
     while (!todo.empty()) {
         for (const FacetId f : todo) recover_facet(f);
-        for (const SegmentId s : mesh_.take_broken_segments()) queue_chain(s);
         drain_segments();
         todo = mesh_.take_broken_facets();
     }
-    classify_cells(mesh_);
-    conforming_ = true;
     faces_.clear();
-    enqueue_all_encroached();
+    refresh_cells();
 }
 
 }  // namespace wellmesh

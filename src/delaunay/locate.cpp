@@ -65,7 +65,7 @@ void Triangulation::find_star(VertexId v, std::vector<TetId>& star) {
 TetId Triangulation::find_edge(VertexId a, VertexId b) {
     // Walk the star of a; stop at the first tetrahedron that has b too.
     next_epoch();
-    std::vector<TetId>& stack = new_tets_;
+    std::vector<TetId>& stack = star_stack_;
     stack.clear();
     stack.push_back(vertex_tet_[a.index()]);
     mark_[stack[0].index()] = epoch_;

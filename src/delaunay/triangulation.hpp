@@ -120,6 +120,7 @@ private:
     std::vector<std::uint32_t> mark_;  // per tet: epoch_ visited and not in conflict, epoch_ + 1 in conflict
     std::uint32_t epoch_ = 0;
     std::vector<TetId> new_tets_;
+    std::vector<TetId> star_stack_;
     std::vector<TetFace> outside_;
     std::vector<std::uint32_t> slot_of_vertex_;  // sparse-set: position in local_vertices_, checked there
     std::vector<VertexId> local_vertices_;

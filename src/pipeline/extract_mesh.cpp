@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/extract_mesh.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace wellmesh {
+namespace {
+
+constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+
+struct ListedFace {
+    std::array<std::uint32_t, 3> corners{};
+    FacetId facet{};
+};
+struct ListedEdge {
+    std::array<std::uint32_t, 2> ends{};
+    SegmentId segment{};
+    friend bool operator<(const ListedEdge& a, const ListedEdge& b) { return a.ends < b.ends; }
+    friend bool operator==(const ListedEdge& a, const ListedEdge& b) { return a.ends == b.ends; }
+};
+
+void list_constraints(const ConformingMesh& mesh, TetId t, const std::vector<std::uint32_t>& number, std::vector<ListedFace>& faces, std::vector<ListedEdge>& edges) {
+    const TetLabels& l = mesh.labels(t);
+    const auto& c = mesh.tets().corners(t);
+    for (unsigned f = 0; f < 4; ++f) {
+        if (!l.facets[f].valid()) continue;
+        const TetId other = mesh.tets().across(t, f).tet();
+        if (other < t && !mesh.tets().is_ghost(other) && mesh.in_domain(other)) continue;  // listed from there
+        const auto fc = mesh.tets().face_corners(TetFace{t, f});
+        faces.push_back({{number[fc[0].index()], number[fc[1].index()], number[fc[2].index()]}, l.facets[f]});
+    }
+    for (unsigned e = 0; e < 6; ++e) {
+        if (!l.segments[e].valid()) continue;
+        const std::uint32_t a = number[c[kEdgeCorners[e][0]].index()], b = number[c[kEdgeCorners[e][1]].index()];
+        edges.push_back({{std::min(a, b), std::max(a, b)}, l.segments[e]});
+    }
+}
+
+}  // namespace
+
+TetMesh extract_mesh(const ConformingMesh& mesh) {
+    TetMesh out;
+    const TetStore& tets = mesh.tets();
+    const ValidPlc& plc = mesh.plc();
+    std::vector<std::uint32_t> number(mesh.vertex_slots(), kUnused);
+    const auto in_output = [&](TetId t) { return tets.is_finite(t) && mesh.in_domain(t); };
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < tets.slots(); ++i) {
+        if (!in_output(TetId{i})) continue;
+        ++count;
+        for (const VertexId v : tets.corners(TetId{i})) number[v.index()] = 0;
+    }
+    for (std::size_t v = 0; v < number.size(); ++v) {
+        if (number[v] == kUnused) continue;
+        number[v] = static_cast<std::uint32_t>(out.vertices.size());
+        out.vertices.push_back(mesh.point(VertexId{v}));
+        const VertexInfo& info = mesh.info(VertexId{v});
+        std::uint32_t id = info.carrier_id;
+        if (info.carrier == CarrierKind::input_vertex) id = plc.source_vertex[id];
+        if (info.carrier == CarrierKind::region) id = static_cast<std::uint32_t>(plc.cells[id].region);
+        out.vertex_carriers.push_back({info.carrier, id});
+    }
+    out.tets.reserve(count);
+    out.tet_regions.reserve(count);
+    std::vector<ListedFace> faces;
+    std::vector<ListedEdge> edges;
+    for (std::size_t i = 0; i < tets.slots(); ++i) {
+        const TetId t{i};
+        if (!in_output(t)) continue;
+        const auto& c = tets.corners(t);
+        out.tets.push_back({number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]});
+        out.tet_regions.push_back(plc.cells[mesh.cell(t).index()].region);
+        if (mesh.has_labels(t)) list_constraints(mesh, t, number, faces, edges);
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    for (const ListedFace& f : faces) {
+        out.subfaces.push_back(f.corners);
+        out.subface_facets.push_back(static_cast<std::int32_t>(plc.facets[f.facet.index()].source_facet) + 1);
+        out.subface_markers.push_back(plc.facets[f.facet.index()].marker);
+    }
+    for (const ListedEdge& e : edges) {
+        out.subsegments.push_back(e.ends);
+        out.subsegment_segments.push_back(static_cast<std::int32_t>(e.segment.value()) + 1);
+    }
+    return out;
+}
+
+}  // namespace wellmesh

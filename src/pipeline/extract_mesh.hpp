@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "conforming/conforming_mesh.hpp"
+#include "wellmesh/tet_mesh.hpp"
+
+namespace wellmesh {
+
+/// The domain's part of the mesh, vertices renumbered in order of insertion; ghosts, holes and the outside are left behind.
+[[nodiscard]] TetMesh extract_mesh(const ConformingMesh& mesh);
+
+}  // namespace wellmesh

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pipeline: one call a stage, nothing else (src/README.md).
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "conforming/boundary_refiner.hpp"
+#include "conforming/conforming_mesh.hpp"
+#include "core/run_guard.hpp"
+#include "pipeline/extract_mesh.hpp"
+#include "pipeline/report_goals.hpp"
+#include "predicates/predicates.hpp"
+#include "refinement/refine.hpp"
+#include "validation/valid_plc.hpp"
+#include "wellmesh/generate.hpp"
+
+namespace wellmesh {
+namespace {
+
+class Generator {
+public:
+    Generator(const Plc& plc, const MeshOptions& options, const RunControl& control) : plc_(plc), options_(options), guard_(options.limits, control) {}
+
+private:
+    template <class F>
+    auto timed(Stage stage, F&& work) {
+        guard_.enter(stage);
+        const auto start = std::chrono::steady_clock::now();
+        auto note = [&] {
+            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+            result_.statistics.stages.push_back({stage, spent.count(), vertices_, tets_});
+        };
+        if constexpr (std::is_void_v<decltype(work())>) {
+            work();
+            note();
+        } else {
+            auto value = work();
+            note();
+            return value;
+        }
+    }
+
+public:
+    MeshResult run() {
+        const std::uint64_t exact_before = exact_predicate_calls();
+        const ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_); });
+        result_.statistics.coplanar_tolerance = valid.coplanar_tolerance;
+        for (const Defect& d : valid.diagnosis.defects) result_.statistics.notes.push_back(d.message);
+        try {
+            fill(valid);
+        } catch (const MeshError& e) {
+            if (e.code() == ErrorCode::budget_exhausted && !valid.acute_features.empty() && !user_budget_spent()) throw acute_failure(valid, e);
+            throw;
+        }
+        CertifyOptions bounds;
+        bounds.max_radius_edge_ratio = options_.quality.max_radius_edge_ratio;
+        if (options_.quality.min_dihedral_angle_deg > 0) bounds.min_dihedral_angle_deg = options_.quality.min_dihedral_angle_deg;
+        const double extent = input_extent(plc_);
+        bounds.tolerance = std::max(bounds.tolerance, 4 * (valid.coplanar_tolerance) / extent);
+        result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
+        report_goals(result_, options_, valid);
+        result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
+        return std::move(result_);
+    }
+
+private:
+    void fill(const ValidPlc& valid) {
+        ConformingMesh mesh = timed(Stage::delaunay, [&] { return ConformingMesh(valid); });
+        if (!valid.acute_features.empty()) guard_.set_ceiling(100 * valid.vertices.size() + 50'000);
+        BoundaryRefiner boundary(mesh, guard_, options_.seed);
+        const auto count = [&] {
+            vertices_ = mesh.vertex_count();
+            tets_ = mesh.tets().live();
+        };
+        timed(Stage::conform, [&] {
+            boundary.recover_all();
+            boundary.conform();
+            count();
+        });
+        Refiner refiner(mesh, boundary, guard_, options_);
+        RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
+        timed(Stage::refine, [&] {
+            verdict = refiner.refine();
+            count();
+        });
+        stopped_by_ = verdict;
+        result_.mesh = extract_mesh(mesh);
+        result_.statistics.guarded_insertions = refiner.statistics().guarded;
+        result_.termination = termination(verdict);
+    }
+
+    static Termination termination(RunGuard::Verdict verdict) {
+        switch (verdict) {
+            case RunGuard::Verdict::cancelled: return Termination::cancelled;
+            case RunGuard::Verdict::out_of_time: return Termination::time_budget_reached;
+            case RunGuard::Verdict::out_of_vertices: return Termination::vertex_budget_reached;
+            case RunGuard::Verdict::go_on: break;
+        }
+        return Termination::goals_met;
+    }
+
+    [[nodiscard]] bool user_budget_spent() const { return options_.limits.time && guard_.seconds() * 1000 >= static_cast<double>(options_.limits.time->count()); }
+
+    static MeshError acute_failure(const ValidPlc& valid, const MeshError& cause) {
+        const AcuteFeature& worst = valid.acute_features.front();
+        const bool segment = worst.kind == EntityKind::segment;
+        const Vec3 where = segment ? valid.vertices[valid.segments[worst.id].ends[0].index()] : valid.vertices[worst.id];
+        return {ErrorCode::unsupported_acute, cause.stage(),
+                fmt::format("{}; the input has {} features at less than 90 degrees, the sharpest {:.4g} degrees at {} {} ({}, {}, {})", cause.what(),
+                            valid.acute_features.size(), worst.angle_deg, to_string(worst.kind), segment ? worst.id + 1 : valid.source_vertex[worst.id] + 1, where.x,
+                            where.y, where.z),
+                {{worst.kind, segment ? worst.id + 1U : valid.source_vertex[worst.id] + 1U, where}}};
+    }
+
+    static double input_extent(const Plc& plc) {
+        Vec3 lo, hi;
+        bounding_box(plc.vertices, lo, hi);
+        return std::hypot(hi.x - lo.x, hi.y - lo.y, hi.z - lo.z);
+    }
+
+    const Plc& plc_;
+    const MeshOptions& options_;
+    RunGuard guard_;
+    MeshResult result_;
+    RunGuard::Verdict stopped_by_ = RunGuard::Verdict::go_on;
+    std::uint64_t vertices_ = 0, tets_ = 0;
+};
+
+}  // namespace
+
+MeshResult generate(const Plc& plc, const MeshOptions& options, const RunControl& control) {
+    const std::vector<std::string> wrong = check(options);
+    if (!wrong.empty()) throw MeshError(ErrorCode::bad_options, Stage::validate, fmt::format("{}", fmt::join(wrong, "; ")));
+    return Generator(plc, options, control).run();
+}
+
+}  // namespace wellmesh

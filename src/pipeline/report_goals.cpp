@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Asked versus achieved.
+#include "pipeline/report_goals.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/vec3_math.hpp"
+#include "quality/tet_shape.hpp"
+#include "refinement/sizing.hpp"
+
+namespace wellmesh {
+namespace {
+
+constexpr std::size_t kWorstListed = 8;
+
+/// Counts the tetrahedra for which `excess(shape, region)` is positive and keeps the worst few.
+template <class F>
+void count_misses(const MeshResult& result, AskedAchieved& goal, F&& excess) {
+    std::vector<std::pair<double, std::size_t>> missed;
+    const TetMesh& mesh = result.mesh;
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+        const auto& c = mesh.tets[t];
+        const double by = excess(shape_of(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]]), mesh.tet_regions[t]);
+        if (by > 0) missed.push_back({by, t});
+    }
+    goal.elements_missed = missed.size();
+    goal.met = missed.empty();
+    std::sort(missed.begin(), missed.end(), [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+    for (std::size_t i = 0; i < std::min(kWorstListed, missed.size()); ++i) {
+        const auto& c = mesh.tets[missed[i].second];
+        Vec3 centre;
+        for (const std::uint32_t v : c) centre = centre + 0.25 * mesh.vertices[v];
+        goal.worst.push_back({EntityKind::tetrahedron, missed[i].second + 1, centre});
+    }
+}
+
+}  // namespace
+
+void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc& plc) {
+    const ShapeStatistics& all = result.certificate.all;
+    for (const VertexCarrier& c : result.mesh.vertex_carriers) {
+        switch (c.kind) {
+            case CarrierKind::input_vertex: ++result.statistics.input_vertices; break;
+            case CarrierKind::segment: ++result.statistics.segment_vertices; break;
+            case CarrierKind::facet: ++result.statistics.facet_vertices; break;
+            case CarrierKind::region: ++result.statistics.interior_vertices; break;
+        }
+    }
+    const double rho = options.quality.max_radius_edge_ratio;
+    AskedAchieved radius_edge{"max radius-edge ratio", rho, all.max_radius_edge_ratio, all.max_radius_edge_ratio <= rho, 0, {}};
+    if (!radius_edge.met) count_misses(result, radius_edge, [&](const TetShape& s, std::int32_t) { return s.radius_edge - rho; });
+    result.goals.push_back(radius_edge);
+    const double theta = options.quality.min_dihedral_angle_deg;
+    if (theta > 0) {
+        AskedAchieved dihedral{"min dihedral angle [deg]", theta, all.min_dihedral_angle_deg, all.min_dihedral_angle_deg >= theta, 0, {}};
+        if (!dihedral.met) count_misses(result, dihedral, [&](const TetShape& s, std::int32_t) { return theta - s.min_dihedral_deg; });
+        result.goals.push_back(dihedral);
+    }
+    if (options.size.edge_length) {
+        const double h = *options.size.edge_length;
+        const double bound = kCircumradiusPerEdgeLength * h * (1 + 1e-9);
+        AskedAchieved size{"edge length (mean)", h, all.mean_edge, true, 0, {}};
+        count_misses(result, size, [&](const TetShape& s, std::int32_t) { return s.circumradius - bound * kSizeTolerance; });
+        result.goals.push_back(size);
+    }
+    std::vector<std::pair<std::int32_t, double>> bounds;
+    for (const ValidCell& c : plc.cells)
+        if (c.filled && c.max_volume > 0) bounds.push_back({c.region, c.max_volume});
+    if (options.size.max_volume || !bounds.empty()) {
+        const auto bound_of = [&](std::int32_t region) {
+            double v = options.size.max_volume.value_or(HUGE_VAL);
+            for (const auto& b : bounds)
+                if (b.first == region) v = std::min(v, b.second);
+            return v;
+        };
+        double tightest = options.size.max_volume.value_or(HUGE_VAL);
+        for (const auto& b : bounds) tightest = std::min(tightest, b.second);
+        AskedAchieved volume{"max volume", tightest, all.max_volume, true, 0, {}};
+        count_misses(result, volume, [&](const TetShape& s, std::int32_t region) { return s.volume - bound_of(region) * (1 + 1e-9); });
+        result.goals.push_back(volume);
+    }
+    if (result.termination == Termination::goals_met &&
+        std::any_of(result.goals.begin(), result.goals.end(), [](const AskedAchieved& g) { return !g.met; }))
+        result.termination = Termination::goals_unmet;
+}
+
+}  // namespace wellmesh

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "validation/valid_plc.hpp"
+#include "wellmesh/options.hpp"
+#include "wellmesh/result.hpp"
+
+namespace wellmesh {
+
+/// Fills result.goals and, where no budget ended the run, result.termination from the finished mesh and its certificate.
+void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc& plc);
+
+}  // namespace wellmesh

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tetrahedra waiting to be refined, worst first by powers of the square root of two; last in, first out among equals, which keeps
+// consecutive insertions close together: locality of the queue is worth more than an exact order.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/ids.hpp"
+#include "core/rng.hpp"
+#include "delaunay/tet_store.hpp"
+
+namespace wellmesh {
+
+class BadTetQueue {
+public:
+    struct Entry {
+        TetId tet{};
+        std::uint32_t fingerprint = 0;
+    };
+
+    /// Tells a tetrahedron from a later one that got its id.
+    static std::uint32_t fingerprint(const TetStore::Corners& c) {
+        return (c[0].value() * 0x9e3779b1U) ^ (c[1].value() * 0x85ebca77U) ^ (c[2].value() * 0xc2b2ae3dU) ^ (c[3].value() * 0x27d4eb2fU);
+    }
+
+    /// @param squared_badness  larger is worse; only its power of two counts.
+    void push(TetId t, const TetStore::Corners& c, double squared_badness) {
+        const int level = squared_badness < 1e300 ? std::clamp(std::ilogb(squared_badness) + kBias, 0, kLevels - 1) : kLevels - 1;
+        buckets_[static_cast<std::size_t>(level)].push_back({t, fingerprint(c)});
+        top_ = std::max(top_, level);
+        ++size_;
+    }
+    [[nodiscard]] bool empty() const { return size_ == 0; }
+    [[nodiscard]] std::size_t size() const { return size_; }
+    Entry pop() {
+        while (buckets_[static_cast<std::size_t>(top_)].empty()) --top_;
+        auto& bucket = buckets_[static_cast<std::size_t>(top_)];
+        const Entry e = bucket.back();
+        bucket.pop_back();
+        --size_;
+        return e;
+    }
+    void clear() {
+        for (auto& b : buckets_) b.clear();
+        size_ = 0;
+        top_ = 0;
+    }
+
+private:
+    static constexpr int kBias = 40, kLevels = 160;
+    std::array<std::vector<Entry>, kLevels> buckets_;
+    int top_ = 0;
+    std::size_t size_ = 0;
+};
+
+}  // namespace wellmesh

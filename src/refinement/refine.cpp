@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinement/refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "conforming/place_point.hpp"
+#include "core/rng.hpp"
+#include "core/vec3_math.hpp"
+#include "quality/tet_shape.hpp"
+
+namespace wellmesh {
+namespace {
+
+constexpr double kPickingRadius = 0.3;  // delta of the paper; docs/decisions
+/// Candidates matter only where the tetrahedra that they make may stay: within this factor of the size bound.
+constexpr double kJudgeWithin = 2.0;
+/// Beyond this R/L the circumcentre in doubles is noise: the tetrahedron is split at a labelled face or at its longest edge.
+constexpr double kFlatRadiusEdge = 1e6;
+
+}  // namespace
+
+Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options)
+    : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(cell_sizes(mesh.plc(), options.size)), max_radius_edge_(options.quality.max_radius_edge_ratio) {
+    boundary_.on_insert = [this](VertexId) { enqueue(mesh_.triangulation().new_tets()); };
+    boundary_.on_repair = [this] { enqueue_all(); };
+    boundary_.judge = [this](const Cavity& cavity, const Placement& where) { return !judging_ || star_is_good(cavity, where); };
+}
+
+Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
+    const auto& corners = mesh_.tets().corners(t);
+    const Vec3 &a = mesh_.point(corners[0]), &b = mesh_.point(corners[1]), &c = mesh_.point(corners[2]), &d = mesh_.point(corners[3]);
+    const Vec3 u = b - a, v = c - a, w = d - a;
+    const double six_volume = determinant(u, v, w);
+    const double lu = squared_norm(u), lv = squared_norm(v), lw = squared_norm(w);
+    const Vec3 n = lu * cross(v, w) + lv * cross(w, u) + lw * cross(u, v);
+    const double squared_radius = squared_norm(n) / (4 * six_volume * six_volume);
+    const double squared_edge = std::min({lu, lv, lw, squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
+    squared_badness = squared_radius;
+    if (!(squared_radius < kFlatRadiusEdge * kFlatRadiusEdge * squared_edge)) {
+        squared_badness = std::numeric_limits<double>::infinity();
+        return Fault::flat;
+    }
+    const CellSize& size = sizes_[mesh_.cell(t).index()];
+    if (squared_radius > size.max_squared_circumradius || six_volume > 6 * size.max_volume) return Fault::size;
+    squared_badness = squared_radius / squared_edge;
+    if (squared_badness > max_radius_edge_ * max_radius_edge_) return Fault::radius_edge;
+    return Fault::none;
+}
+
+void Refiner::enqueue(const std::vector<TetId>& tets) {
+    for (const TetId t : tets) {
+        if (!mesh_.in_domain(t) || mesh_.tets().is_ghost(t)) continue;
+        double badness = 0;
+        switch (classify(t, badness)) {
+            case Fault::none: break;
+            case Fault::size: by_size_.push(t, mesh_.tets().corners(t), badness); break;
+            case Fault::radius_edge:
+            case Fault::flat: by_radius_edge_.push(t, mesh_.tets().corners(t), badness); break;
+        }
+    }
+}
+
+void Refiner::enqueue_all() {
+    std::vector<TetId> all;
+    for (std::size_t i = 0; i < mesh_.tets().slots(); ++i)
+        if (mesh_.tets().is_finite(TetId{i})) all.push_back(TetId{i});
+    enqueue(all);
+}
+
+bool Refiner::star_is_good(const Cavity& cavity, const Placement& where) const {
+    const TetStore& tets = mesh_.tets();
+    for (const BoundaryFace& b : cavity.boundary) {
+        const TetId behind = b.inside.tet();
+        if (!mesh_.in_domain(behind)) continue;
+        const auto c = tets.face_corners(b.inside);
+        if (c[0] == kInfiniteVertex || c[1] == kInfiniteVertex || c[2] == kInfiniteVertex) continue;
+        if (where.carrier != CarrierKind::region && mesh_.has_labels(behind)) {
+            const FacetId f = mesh_.facet_at(b.inside);
+            // A flat tetrahedron against the carrier's own subface will lie outside.
+            if (f.valid() && (where.carrier == CarrierKind::facet ? f.value() == where.carrier_id : true)) continue;
+        }
+        if (max_cos_dihedral(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), cavity.point) > sliver_cosine_) return false;
+    }
+    return true;
+}
+
+/// The vertex that Lemma 5.1 holds responsible: the younger end of the shortest edge, or for slivers the youngest vertex [LiTeng01].
+VertexId Refiner::responsible_vertex(TetId t, InsertionReason reason) const {
+    const auto& c = mesh_.tets().corners(t);
+    if (reason == InsertionReason::sliver) return *std::max_element(c.begin(), c.end());
+    double shortest = 1e300;
+    VertexId younger{};
+    for (const auto& e : kEdgeCorners) {
+        const double d = squared_distance(mesh_.point(c[e[0]]), mesh_.point(c[e[1]]));
+        if (d < shortest) {
+            shortest = d;
+            younger = std::max(c[e[0]], c[e[1]]);
+        }
+    }
+    return younger;
+}
+
+bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, InsertionReason reason) {
+    const CellId cell = mesh_.cell(t);
+    const Placement where = Placement::in_cell(cell);
+    Triangulation& tri = mesh_.triangulation();
+    const VertexId parent = responsible_vertex(t, reason);
+    ++statistics_.candidates;
+    if (judging_ && !star_is_good(cavity_, where)) {
+        const auto& c = mesh_.tets().corners(t);
+        const std::uint64_t key = mix64(boundary_.seed(), mix64(mix64(c[0].value(), c[1].value()), mix64(c[2].value(), c[3].value())));
+        bool found = false;
+        for (unsigned k = 1; k < candidates_ && !found; ++k) {
+            const Vec3 p = flush_to_exact_range(centre + (kPickingRadius * radius) * picking_point(3, key, k));
+            ++statistics_.candidates;
+            if (!tri.find_conflict_cavity(p, t, cavity_) || mesh_.cell(cavity_.tets[0]) != cell) continue;
+            if (!star_is_good(cavity_, where)) continue;
+            boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+            found = encroached_segments_.empty() && encroached_faces_.empty();
+        }
+        if (!found) {
+            ++statistics_.fallbacks;
+            if (!tri.find_conflict_cavity(centre, t, cavity_)) return false;
+        }
+    }
+    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::region, reason, cell.value(), parent, 0});
+    ++statistics_.insertions;
+    double shortest = 1e300;
+    for (const TetId s : tri.new_tets())
+        for (const VertexId w : mesh_.tets().corners(s))
+            if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
+    mesh_.info(v).insertion_length = std::sqrt(shortest);
+    boundary_.enqueue_encroached(tri.new_tets());
+    enqueue(tri.new_tets());
+    return true;
+}
+
+void Refiner::split_flat(TetId t) {
+    const SplitRequest request{InsertionReason::boundary_by_radius_edge, responsible_vertex(t, InsertionReason::radius_edge)};
+    if (mesh_.has_labels(t))
+        for (unsigned f = 0; f < 4; ++f) {
+            const FacetId facet = mesh_.labels(t).facets[f];
+            if (facet.valid() && boundary_.split(Subface{mesh_.tets().face_corners(TetFace{t, f}), facet}, request) != BoundaryRefiner::SplitOutcome::gone) return;
+        }
+    const auto& c = mesh_.tets().corners(t);
+    double longest = 0;
+    unsigned edge = 0;
+    for (unsigned e = 0; e < 6; ++e) {
+        const double d = squared_distance(mesh_.point(c[kEdgeCorners[e][0]]), mesh_.point(c[kEdgeCorners[e][1]]));
+        if (d > longest) {
+            longest = d;
+            edge = e;
+        }
+    }
+    const SegmentId s = mesh_.segment_at(t, edge);
+    const VertexId a = c[kEdgeCorners[edge][0]], b = c[kEdgeCorners[edge][1]];
+    if (s.valid()) {
+        boundary_.split(Subsegment{a, b, s}, request);
+        return;
+    }
+    const Vec3 p = flush_to_exact_range(mesh_.point(a) + 0.51 * (mesh_.point(b) - mesh_.point(a)));
+    if (!mesh_.triangulation().find_conflict_cavity(p, t, cavity_) || mesh_.cell(cavity_.tets[0]) != mesh_.cell(t)) return;
+    boundary_.find_encroached(cavity_, Placement::in_cell(mesh_.cell(t)), encroached_segments_, encroached_faces_);
+    if (!encroached_segments_.empty()) {
+        boundary_.split(Subsegment{encroached_segments_[0]}, request);
+    } else if (!encroached_faces_.empty()) {
+        boundary_.split(Subface{encroached_faces_[0]}, request);
+    } else {
+        const bool was_judging = std::exchange(judging_, false);
+        insert_in_cell(t, p, std::sqrt(longest) / 2, InsertionReason::radius_edge);
+        judging_ = was_judging;
+    }
+}
+
+void Refiner::process(TetId t, InsertionReason reason) {
+    const auto corners = mesh_.tets().corners(t);
+    double radius = 0;
+    const Vec3 centre = flush_to_exact_range(
+        circumcentre(mesh_.point(corners[0]), mesh_.point(corners[1]), mesh_.point(corners[2]), mesh_.point(corners[3]), &radius));
+    const CellSize& size = sizes_[mesh_.cell(t).index()];
+    judging_ = sliver_cosine_ < 1;
+    if (judging_ && reason == InsertionReason::size) {
+        // A volume bound v is met by a regular tetrahedron of circumradius 1.25 v^(1/3); refined ones have about as much.
+        const double bound = std::min(std::sqrt(size.max_squared_circumradius), 1.25 * std::cbrt(size.max_volume));
+        judging_ = radius < kJudgeWithin * bound;
+    }
+    const Placement where = Placement::in_cell(mesh_.cell(t));
+    if (!mesh_.triangulation().find_conflict_cavity(centre, t, cavity_)) return;
+    boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+    if (!encroached_segments_.empty() || !encroached_faces_.empty()) {
+        const InsertionReason why = reason == InsertionReason::size     ? InsertionReason::boundary_by_size
+                                    : reason == InsertionReason::sliver ? InsertionReason::boundary_by_sliver
+                                                                        : InsertionReason::boundary_by_radius_edge;
+        const SplitRequest request{why, responsible_vertex(t, reason)};
+        if (!encroached_segments_.empty()) {
+            const Subsegment longest = *std::max_element(encroached_segments_.begin(), encroached_segments_.end(), [&](const Subsegment& x, const Subsegment& y) {
+                return squared_distance(mesh_.point(x.a), mesh_.point(x.b)) < squared_distance(mesh_.point(y.a), mesh_.point(y.b));
+            });
+            boundary_.split(longest, request);
+        } else {
+            // The subface that holds the projection of the circumcentre; failing that, the nearest one.
+            const auto projection_depth = [&](const Subface& s) {
+                const Vec3 &a = mesh_.point(s.corners[0]), &b = mesh_.point(s.corners[1]), &c = mesh_.point(s.corners[2]);
+                const Vec3 n = cross(b - a, c - a);
+                const double area = squared_norm(n);
+                return std::min({dot(cross(b - centre, c - centre), n), dot(cross(c - centre, a - centre), n), dot(cross(a - centre, b - centre), n)}) / area;
+            };
+            const Subface chosen = *std::max_element(encroached_faces_.begin(), encroached_faces_.end(),
+                                                     [&](const Subface& x, const Subface& y) { return projection_depth(x) < projection_depth(y); });
+            boundary_.split(chosen, request);
+        }
+    } else if (mesh_.cell(cavity_.tets[0]) == mesh_.cell(t)) {
+        insert_in_cell(t, centre, radius, reason);
+    }
+}
+
+RunGuard::Verdict Refiner::refine() {
+    enqueue_all();
+    while (true) {
+        if (!boundary_.idle()) {
+            judging_ = false;
+            boundary_.step();
+            continue;
+        }
+        if (by_size_.empty() && by_radius_edge_.empty()) return RunGuard::Verdict::go_on;
+        const RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), by_size_.size() + by_radius_edge_.size());
+        if (verdict != RunGuard::Verdict::go_on) {
+            by_size_.clear();
+            by_radius_edge_.clear();
+            return verdict;
+        }
+        const bool size = !by_size_.empty();
+        const BadTetQueue::Entry e = size ? by_size_.pop() : by_radius_edge_.pop();
+        if (!mesh_.tets().is_live(e.tet) || mesh_.tets().is_ghost(e.tet) || BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) != e.fingerprint) continue;
+        if (!mesh_.in_domain(e.tet)) continue;
+        double badness = 0;
+        const Fault fault = classify(e.tet, badness);
+        if (fault == Fault::none) continue;
+        if (fault == Fault::radius_edge || fault == Fault::flat) {
+            // Guard: the shortest edge that splitting could make is about the circumradius.
+            const auto& c = mesh_.tets().corners(e.tet);
+            const double squared_edge = shortest_edge_squared(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]));
+            if (squared_edge < shortest_allowed_ * shortest_allowed_) {
+                ++statistics_.guarded;
+                continue;
+            }
+        }
+        const std::size_t vertices_before = mesh_.vertex_count();
+        if (fault == Fault::flat) split_flat(e.tet);
+        else process(e.tet, size ? InsertionReason::size : InsertionReason::radius_edge);
+        // It may have survived when the boundary was split instead: then it waits again. If nothing could be done it is given up.
+        if (mesh_.vertex_count() != vertices_before && mesh_.tets().is_finite(e.tet) && BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) == e.fingerprint && mesh_.in_domain(e.tet)) {
+            (size ? by_size_ : by_radius_edge_).push(e.tet, mesh_.tets().corners(e.tet), badness);
+        }
+    }
+}
+
+RunGuard::Verdict Refiner::split(TetId t, InsertionReason reason) {
+    const std::uint32_t print = BadTetQueue::fingerprint(mesh_.tets().corners(t));
+    double badness = 0;
+    for (unsigned attempts = 0; attempts < 64; ++attempts) {
+        if (!mesh_.tets().is_finite(t) || BadTetQueue::fingerprint(mesh_.tets().corners(t)) != print || !mesh_.in_domain(t)) break;
+        if (classify(t, badness) == Fault::flat) split_flat(t);
+        else process(t, reason);
+        judging_ = false;
+        while (!boundary_.idle()) boundary_.step();
+    }
+    return refine();
+}
+
+}  // namespace wellmesh
