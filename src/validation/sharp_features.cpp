@@ -88,15 +88,19 @@ private:
     std::vector<std::pair<std::uint32_t, bool>> inside_;  ///< for each acute segment, whether in a filled cell
 };
 
-/// Displacement over the facet's extent across its longest direction.
+/// Displacement over the facet's width: one of its axes runs along its longest direction, the other across.
 double SharpFeatureFinder::slack_of(const ValidFacet& facet) const {
-    double low = 0, high = 0;
-    for (const VertexId v : facet.vertices) {
-        const double w = dot(point(v) - facet.origin, facet.axis_v);
-        low = std::min(low, w);
-        high = std::max(high, w);
+    double width = std::numeric_limits<double>::infinity();
+    for (const Vec3& axis : {facet.axis_u, facet.axis_v}) {
+        double low = 0, high = 0;
+        for (const VertexId v : facet.vertices) {
+            const double w = dot(point(v) - facet.origin, axis);
+            low = std::min(low, w);
+            high = std::max(high, w);
+        }
+        width = std::min(width, high - low);
     }
-    return high > low ? std::max(displacement_, facet.tolerance) / (high - low) : kRight;
+    return width > 0 ? std::max(displacement_, facet.tolerance) / width : kRight;
 }
 
 std::vector<SoupTriangle> all_triangles(const ValidPlc& plc) {
