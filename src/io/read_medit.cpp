@@ -169,7 +169,8 @@ private:
             std::array<std::uint32_t, N> corners{};
             for (std::uint32_t& corner : corners) {
                 const std::int64_t number = in_.integer("a vertex number");
-                if (number < 1 || number > static_cast<std::int64_t>(kMostVertices)) in_.fail(fmt::format("vertex {} does not exist; numbers count from 1", number));
+                if (number < 1 || number > static_cast<std::int64_t>(kMostVertices))
+                    in_.fail(fmt::format("vertex {} does not exist; numbers count from 1", number));
                 corner = static_cast<std::uint32_t>(number - 1);
                 if (corner >= elements.largest) {
                     elements.largest = corner;

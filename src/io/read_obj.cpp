@@ -93,7 +93,8 @@ private:
         if (number < -so_far) in_.fail(fmt::format("vertex {} does not exist: only {} vertices stand before it", number, so_far));
         if (number > static_cast<std::int64_t>(kMostVertices)) in_.fail(fmt::format("vertex {} does not exist", number));
         const std::int64_t index = number < 0 ? so_far + number : number - 1;
-        if (index >= so_far && (!forward_ || index > static_cast<std::int64_t>(forward_->first))) forward_ = {static_cast<std::uint32_t>(index), in_.line()};
+        if (index >= so_far && (!forward_ || index > static_cast<std::int64_t>(forward_->first)))
+            forward_ = {static_cast<std::uint32_t>(index), in_.line()};
         return static_cast<std::uint32_t>(index);
     }
 
@@ -107,8 +108,9 @@ private:
     /// Vertices may follow the faces that use them, so the largest such number is checked at the end.
     void check_forward_references() const {
         if (forward_ && forward_->first >= plc_.vertices.size())
-            fail_at_line(in_.source(), forward_->second,
-                         fmt::format("vertex {} does not exist; valid numbers are 1 to {}", std::uint64_t{forward_->first} + 1, plc_.vertices.size()));
+            fail_at_line(
+                in_.source(), forward_->second,
+                fmt::format("vertex {} does not exist; valid numbers are 1 to {}", std::uint64_t{forward_->first} + 1, plc_.vertices.size()));
     }
 
     std::int32_t current_marker() {

@@ -21,7 +21,8 @@ void read_header(TextScanner& in) {
     if (kind.starts_with("ST")) kind.remove_prefix(2);
     if (kind.starts_with("C")) kind.remove_prefix(1);
     if (kind.starts_with("N")) kind.remove_prefix(1);
-    if (kind == "4OFF" || kind == "nOFF" || kind == "4nOFF") in.fail(fmt::format("{}: only points of three coordinates are supported", quoted_token(token)));
+    if (kind == "4OFF" || kind == "nOFF" || kind == "4nOFF")
+        in.fail(fmt::format("{}: only points of three coordinates are supported", quoted_token(token)));
     if (kind != "OFF") in.fail_expected(token, "the word OFF (or COFF, NOFF, STOFF)");
     if (in.at_end()) in.fail("expected the numbers of vertices and faces, but the file ends");
 }
@@ -40,6 +41,7 @@ Plc read_off(const SourceFile& source) {
     if (vertices_token == "BINARY") in.fail("binary OFF is not supported; save it as text");
     const std::string_view faces_token = in.next_on_line();
     const std::size_t vertices = in.to_count(vertices_token, "the number of vertices", kLeastVertexBytes);
+    if (vertices > kMostVertices) in.fail("more vertices than 32-bit numbers hold");
     const std::size_t faces = in.to_count(faces_token, "the number of faces", kLeastFaceBytes);
     if (!in.at_end_of_line()) (void)in.to_integer(in.next_on_line(), "the number of edges");  // always unused, often 0 or absent
     if (!in.at_end_of_line()) in.fail_expected(in.next_on_line(), "the end of the line after the counts");

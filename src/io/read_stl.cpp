@@ -29,6 +29,8 @@ public:
     std::uint32_t number_of(Vec3 p) {
         p = {p.x + 0.0, p.y + 0.0, p.z + 0.0};  // -0.0 becomes +0.0
         const auto [at, is_new] = numbers_.try_emplace(p, static_cast<std::uint32_t>(vertices_.size()));
+        if (is_new && vertices_.size() >= kMostVertices)
+            throw MeshError(ErrorCode::bad_input, Stage::read, "more vertices than 32-bit numbers hold");
         if (is_new) vertices_.push_back(p);
         return at->second;
     }
@@ -155,7 +157,9 @@ Plc read_stl(const SourceFile& source) {
     if (size >= kHeaderBytes && size == expected) return read_binary(source, stated);
     const bool text = is_word(TextScanner(source, {.hash_comments = false}).next(), "solid") && source.bytes.find('\0') == std::string::npos;
     if (text) return TextStl(source).read();
-    if (size < kHeaderBytes) fail_in_file(source, fmt::format("neither text STL (no 'solid' at its start) nor binary STL ({} bytes, at least {} needed)", size, kHeaderBytes));
+    if (size < kHeaderBytes)
+        fail_in_file(source,
+                     fmt::format("neither text STL (no 'solid' at its start) nor binary STL ({} bytes, at least {} needed)", size, kHeaderBytes));
     fail_at_byte(source, kHeaderBytes - 4,
                  fmt::format("binary STL states {} triangles, that is {} bytes, but the file has {}", stated, expected, size));
 }

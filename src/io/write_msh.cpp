@@ -105,7 +105,8 @@ void write_head(OutputFile& out, std::string_view version, Groups& groups) {
     out.integer(static_cast<std::int64_t>(groups.segments.entities.size() + groups.facets.entities.size() + groups.regions.entities.size()));
     out.character('\n');
     groups.for_each([&](const auto& dimension) {
-        for (const Entity& e : dimension.entities) out.text(fmt::format("{} {} \"{}_{}\"\n", dimension.kDimension, e.tag, dimension.kName, e.reference));
+        for (const Entity& e : dimension.entities)
+            out.text(fmt::format("{} {} \"{}_{}\"\n", dimension.kDimension, e.tag, dimension.kName, e.reference));
     });
     out.text("$EndPhysicalNames\n");
 }

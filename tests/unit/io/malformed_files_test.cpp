@@ -157,7 +157,8 @@ TEST(MalformedFiles, FlippedAndReplacedBytes) {
             for (std::uint64_t i = 0; i <= round % 3; ++i) {
                 const std::uint64_t random = mix64(round, i);
                 char& byte = damaged[(random >> 8) % damaged.size()];
-                byte = (random & 1) != 0 ? kReplacements[(random >> 40) % kReplacements.size()] : static_cast<char>(byte ^ (1 << ((random >> 1) & 7)));
+                byte =
+                    (random & 1) != 0 ? kReplacements[(random >> 40) % kReplacements.size()] : static_cast<char>(byte ^ (1 << ((random >> 1) & 7)));
             }
             errors += read_damaged(format, damaged) == Outcome::error ? 1U : 0U;
             ++tries;
@@ -174,7 +175,8 @@ TEST(MalformedFiles, NumbersReplacedByOthers) {
             if (!digit(at) || (at > 0 && digit(at - 1))) continue;
             std::size_t end = at;
             while (digit(end)) ++end;
-            for (const char* const number : {"99999999999999999999", "18446744073709551615", "4294967295", "353535235358", "2147483648", "-1", "nan", "1e999", "x"}) {
+            for (const char* const number :
+                 {"99999999999999999999", "18446744073709551615", "4294967295", "353535235358", "2147483648", "-1", "nan", "1e999", "x"}) {
                 std::string damaged = format.valid;
                 damaged.replace(at, end - at, number);
                 (void)read_damaged(format, damaged);
@@ -199,7 +201,13 @@ TEST(MalformedFiles, LinesDroppedAndRepeated) {
 
 TEST(MalformedFiles, OtherFormatsAndNoise) {
     const std::vector<Format> all = formats();
-    std::vector<std::string> contents{std::string(4096, '\0'), std::string(100000, '\n'), std::string(100000, '9'), "\xff\xfe" "O\0F\0F\0", "PK\x03\x04", "{\"json\": [1, 2]}"};
+    std::vector<std::string> contents{std::string(4096, '\0'),
+                                      std::string(100000, '\n'),
+                                      std::string(100000, '9'),
+                                      "\xff\xfe"
+                                      "O\0F\0F\0",
+                                      "PK\x03\x04",
+                                      "{\"json\": [1, 2]}"};
     for (std::uint64_t i = 0; i < 50; ++i) {
         std::string noise;
         for (std::uint64_t k = 0; k < 40 * i; ++k) testing::append_number(noise, mix64(i, k), true);

@@ -17,10 +17,22 @@ namespace wellmesh::io {
 namespace {
 
 TEST(ParseReal, AcceptsWhatFilesContain) {
-    const std::pair<const char*, double> cases[] = {{"1", 1},       {"+1", 1},       {"-1", -1},      {"1.", 1},        {".5", 0.5},      {"-.5e1", -5},
-                                                    {"1e5", 1e5},   {"1E+05", 1e5},  {"1.5e-3", 1.5e-3}, {"3.055220e+000", 3.05522}, {"007", 7},
-                                                    {"4.0822e-017", 4.0822e-17},     {"5e-324", 5e-324}, {"1.7976931348623157e308", 1.7976931348623157e308},
-                                                    {"-31165.1952999999994062819", -31165.1953}, {"0e999", 0}};
+    const std::pair<const char*, double> cases[] = {{"1", 1},
+                                                    {"+1", 1},
+                                                    {"-1", -1},
+                                                    {"1.", 1},
+                                                    {".5", 0.5},
+                                                    {"-.5e1", -5},
+                                                    {"1e5", 1e5},
+                                                    {"1E+05", 1e5},
+                                                    {"1.5e-3", 1.5e-3},
+                                                    {"3.055220e+000", 3.05522},
+                                                    {"007", 7},
+                                                    {"4.0822e-017", 4.0822e-17},
+                                                    {"5e-324", 5e-324},
+                                                    {"1.7976931348623157e308", 1.7976931348623157e308},
+                                                    {"-31165.1952999999994062819", -31165.1953},
+                                                    {"0e999", 0}};
     for (const auto& [text, value] : cases) {
         const ParsedReal parsed = parse_real(text);
         EXPECT_EQ(parsed.fault, NumberFault::none) << text;
@@ -29,9 +41,11 @@ TEST(ParseReal, AcceptsWhatFilesContain) {
 }
 
 TEST(ParseReal, RejectsWhatIsNoFiniteDecimal) {
-    for (const char* const text : {"", "+", "-", ".", "e5", "1e", "1e+", "1d5", "1D5", "0x10", "1,5", "1 ", " 1", "--1", "+-1", "++1", "abc", "1.2.3", "1.#INF", "1_000"})
+    for (const char* const text :
+         {"", "+", "-", ".", "e5", "1e", "1e+", "1d5", "1D5", "0x10", "1,5", "1 ", " 1", "--1", "+-1", "++1", "abc", "1.2.3", "1.#INF", "1_000"})
         EXPECT_EQ(parse_real(text).fault, NumberFault::not_a_number) << text;
-    for (const char* const text : {"nan", "NaN", "-nan", "inf", "-inf", "INFINITY", "+inf"}) EXPECT_EQ(parse_real(text).fault, NumberFault::not_finite) << text;
+    for (const char* const text : {"nan", "NaN", "-nan", "inf", "-inf", "INFINITY", "+inf"})
+        EXPECT_EQ(parse_real(text).fault, NumberFault::not_finite) << text;
     for (const char* const text : {"1e309", "-1e400", "1e99999999999"}) EXPECT_EQ(parse_real(text).fault, NumberFault::too_large) << text;
 }
 

@@ -36,7 +36,8 @@ TEST(ReadObj, ReadsASurface) {
 
 TEST(ReadObj, ReadsEveryKindOfCorner) {
     using Polygon = std::vector<std::uint32_t>;
-    const Plc plc = read(kFour + "f 1 2 3\nf 1/7 2/8 3/9\nf 1/7/1 2/8/1 3/9/1\nf 1//5 2//5 3//5\nf -4 -3 -2\nf -4/-1/-1 \\\n -3/-1/-1 \\\r\n-2/-1/-1\nf 1/ 2/ 3/\n");
+    const Plc plc = read(
+        kFour + "f 1 2 3\nf 1/7 2/8 3/9\nf 1/7/1 2/8/1 3/9/1\nf 1//5 2//5 3//5\nf -4 -3 -2\nf -4/-1/-1 \\\n -3/-1/-1 \\\r\n-2/-1/-1\nf 1/ 2/ 3/\n");
     ASSERT_EQ(plc.facets.size(), 7U);
     for (const PlcFacet& facet : plc.facets) EXPECT_EQ(facet.polygons, std::vector<Polygon>{Polygon({0, 1, 2})});
     EXPECT_EQ(read("f 1 2 3\n" + kFour).facets.size(), 1U) << "vertices may follow";

@@ -15,7 +15,8 @@ using testing::source_of;
 const std::vector<Vec3> kTwo{{1, 2, 3}, {-4.5, 0, 6e10}};
 
 TEST(ReadPoints, ReadsXyz) {
-    for (const char* const text : {"1 2 3\n-4.5 -0 6e10\n", "2\n1 2 3\n-4.5 0 6e10", "# c\n\n1,2,3,red\n-4.5,0,6e10,blue\n", "  1\t2 3 9 9 9\r\n-4.5 0 6e10\r\n"})
+    for (const char* const text :
+         {"1 2 3\n-4.5 -0 6e10\n", "2\n1 2 3\n-4.5 0 6e10", "# c\n\n1,2,3,red\n-4.5,0,6e10,blue\n", "  1\t2 3 9 9 9\r\n-4.5 0 6e10\r\n"})
         EXPECT_EQ(read_xyz_points(source_of(text)), kTwo) << text;
     expect_error(ErrorCode::bad_input, {"p:2:", "line ends"}, [] { (void)read_xyz_points(source_of("1 2 3\n4 5\n", "p")); });
     expect_error(ErrorCode::bad_input, {"1 points", "states 2"}, [] { (void)read_xyz_points(source_of("2\n1 2 3    \n", "p")); });

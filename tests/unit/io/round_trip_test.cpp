@@ -130,10 +130,13 @@ TEST(RoundTrip, Poly) {
 TEST(RoundTrip, FormatsAgree) {
     const TemporaryDirectory directory;
     const testing::Surface surface = testing::triangulated(testing::sample_surface());
-    const std::pair<const char*, std::string> files[] = {
-        {"a.off", testing::off_text(surface)},          {"a.obj", testing::obj_text(surface)},         {"a.ply", testing::ply_bytes(surface, "ascii", true)},
-        {"a.mesh", testing::medit_text(surface)},       {"a.poly", testing::poly_text(surface, false)}, {"a.smesh", testing::poly_text(surface, true)},
-        {"b.ply", testing::ply_bytes(surface, "binary_big_endian", true)}};
+    const std::pair<const char*, std::string> files[] = {{"a.off", testing::off_text(surface)},
+                                                         {"a.obj", testing::obj_text(surface)},
+                                                         {"a.ply", testing::ply_bytes(surface, "ascii", true)},
+                                                         {"a.mesh", testing::medit_text(surface)},
+                                                         {"a.poly", testing::poly_text(surface, false)},
+                                                         {"a.smesh", testing::poly_text(surface, true)},
+                                                         {"b.ply", testing::ply_bytes(surface, "binary_big_endian", true)}};
     for (const auto& [name, bytes] : files) {
         const Plc plc = read_plc(directory.write(name, bytes));
         expect_same_bits(plc.vertices, surface.vertices);

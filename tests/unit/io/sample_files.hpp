@@ -110,7 +110,8 @@ inline std::string stl_binary(const Surface& s) {
 /// @param format  "ascii", "binary_little_endian" or "binary_big_endian"
 inline std::string ply_bytes(const Surface& s, std::string_view format, bool as_double) {
     const bool text = format == "ascii", little = format == "binary_little_endian";
-    std::string out = fmt::format("ply\nformat {} 1.0\ncomment a comment\nelement camera 1\nproperty int id\nelement vertex {}\n", format, s.vertices.size());
+    std::string out =
+        fmt::format("ply\nformat {} 1.0\ncomment a comment\nelement camera 1\nproperty int id\nelement vertex {}\n", format, s.vertices.size());
     const char* type = as_double ? "double" : "float";
     out += fmt::format("property uchar red\nproperty {0} z\nproperty {0} x\nproperty list uchar short rings\nproperty {0} y\n", type);
     out += fmt::format("element face {}\nproperty uint16 flags\nproperty list uchar int vertex_indices\nend_header\n", s.polygons.size());
@@ -164,7 +165,8 @@ inline std::string medit_text(const Surface& s) {
 
 inline std::string poly_text(const Surface& s, bool smesh, std::uint32_t first = 1) {
     std::string out = fmt::format("# part 1\n{} 3 0 0\n", s.vertices.size());
-    for (std::size_t v = 0; v < s.vertices.size(); ++v) out += fmt::format("{} {} {} {}\n", v + first, s.vertices[v].x, s.vertices[v].y, s.vertices[v].z);
+    for (std::size_t v = 0; v < s.vertices.size(); ++v)
+        out += fmt::format("{} {} {} {}\n", v + first, s.vertices[v].x, s.vertices[v].y, s.vertices[v].z);
     out += fmt::format("{} 1\n", s.polygons.size());
     for (std::size_t f = 0; f < s.polygons.size(); ++f) {
         if (!smesh) out += fmt::format("1 0 {}\n", f + 10);

@@ -75,7 +75,8 @@ TEST(TextScanner, QuotesBinaryAndLongTokensSafely) {
 }
 
 TEST(TextScanner, CountsAreBoundedByTheBytesThatFollow) {
-    const SourceFile fits = source_of("3\n1\n2\n3"), too_many = source_of("4\n1\n2\n3"), negative = source_of("-1"), huge = source_of("99999999999999999999");
+    const SourceFile fits = source_of("3\n1\n2\n3"), too_many = source_of("4\n1\n2\n3"), negative = source_of("-1"),
+                     huge = source_of("99999999999999999999");
     EXPECT_EQ(TextScanner(fits, {}).count("the number of things", 2), 3U);
     for (const SourceFile* const source : {&too_many, &negative, &huge})
         expect_error(ErrorCode::bad_input, {":1:", "the number of things"}, [&] { TextScanner(*source, {}).count("the number of things", 2); });

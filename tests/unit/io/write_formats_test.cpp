@@ -51,7 +51,8 @@ std::vector<T> appended_array(const std::string& file, const std::string& name) 
 TEST(WriteMedit, HasTheSectionsInOrder) {
     const std::string file = written(testing::sample_mesh(2), "a.mesh");
     std::size_t at = 0;
-    for (const char* const word : {"MeshVersionFormatted 2\nDimension 3\n", "Vertices\n27\n", "Edges\n24\n", "Triangles\n48\n", "Tetrahedra\n48\n", "End\n"}) {
+    for (const char* const word :
+         {"MeshVersionFormatted 2\nDimension 3\n", "Vertices\n27\n", "Edges\n24\n", "Triangles\n48\n", "Tetrahedra\n48\n", "End\n"}) {
         const std::size_t found = file.find(word, at);
         ASSERT_NE(found, std::string::npos) << word;
         at = found;
@@ -89,7 +90,8 @@ TEST(WriteMsh, NamesPhysicalGroups) {
     for (const int version : {41, 22}) {
         const std::string file = written(testing::sample_mesh(2), "a.msh", {.msh_version = version});
         EXPECT_TRUE(file.starts_with(version == 41 ? "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n" : "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"));
-        for (const char* const name : {"\n20\n1 1 \"segment_1\"", "\n1 12 \"segment_12\"\n", "\n2 6 \"facet_6\"\n", "\n3 1 \"region_-10\"\n", "\n3 2 \"region_20\"\n"})
+        for (const char* const name :
+             {"\n20\n1 1 \"segment_1\"", "\n1 12 \"segment_12\"\n", "\n2 6 \"facet_6\"\n", "\n3 1 \"region_-10\"\n", "\n3 2 \"region_20\"\n"})
             EXPECT_NE(file.find(name), std::string::npos) << name;
     }
 }
