@@ -111,22 +111,6 @@ std::vector<VertexId> ConformingMesh::steiner_vertices_of(SegmentId s) const {
     return out;
 }
 
-bool ConformingMesh::is_on_segment(VertexId v, SegmentId s) const {
-    const VertexInfo& i = info(v);
-    if (i.carrier == CarrierKind::segment) return i.carrier_id == s.value();
-    const auto& ends = plc_->segments[s.index()].ends;
-    return v == ends[0] || v == ends[1];
-}
-
-bool ConformingMesh::share_segment(VertexId a, VertexId b, VertexId c) const {
-    for (const VertexId v : {a, b, c}) {
-        if (info(v).carrier != CarrierKind::segment) continue;  // of three vertices on one segment, one is no end of it
-        const SegmentId s{info(v).carrier_id};
-        return is_on_segment(a, s) && is_on_segment(b, s) && is_on_segment(c, s);
-    }
-    return false;
-}
-
 bool ConformingMesh::is_subsegment(VertexId a, VertexId b) {
     const TetId t = tri_.find_edge(a, b);
     return t.valid() && segment_at(t, kEdgeOf[tets().find_corner(t, a)][tets().find_corner(t, b)]).valid();

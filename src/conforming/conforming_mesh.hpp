@@ -100,9 +100,6 @@ public:
     /// Steiner vertices on the facet and on its segments, ascending; or on the segment, in order of insertion.
     [[nodiscard]] std::vector<VertexId> steiner_vertices_of(FacetId f) const;
     [[nodiscard]] std::vector<VertexId> steiner_vertices_of(SegmentId s) const;
-    [[nodiscard]] bool is_on_segment(VertexId v, SegmentId s) const;
-    /// Do all three vertices lie on one segment?
-    [[nodiscard]] bool share_segment(VertexId a, VertexId b, VertexId c) const;
     /// Is ab a labelled edge?
     [[nodiscard]] bool is_subsegment(VertexId a, VertexId b);
 

@@ -22,6 +22,10 @@ void FacetTriangulation::collect_vertices(const ConformingMesh& mesh) {
     for (const VertexId v : mesh.steiner_vertices_of(facet_)) vertices_.push_back(v);
     // In a coordinate plane the coordinates themselves are exact, and their lexicographic order, which breaks ties, is the mesh's own.
     const Vec3& n = facet.normal;
+    double largest = 0;
+    for (const VertexId v : vertices_) largest = std::max({largest, std::abs(mesh.point(v).x), std::abs(mesh.point(v).y), std::abs(mesh.point(v).z)});
+    // A point is off its place by a few ulp, or by what the input itself is off its plane; 16 covers the frame's and the outline's share.
+    rounding_ = 16 * std::max(largest * 0x1p-52, facet.tolerance);
     for (const VertexId v : vertices_) {
         const Vec3& p = mesh.point(v);
         if (n.y == 0 && n.z == 0) {
@@ -79,7 +83,8 @@ bool FacetTriangulation::is_inside(const Vec3& uv, const ConformingMesh& mesh) c
     for (const auto& t : facet.triangles) {
         const Vec3 &a = flat_[local(t[0])], &b = flat_[local(t[1])], &c = flat_[local(t[2])];
         const double x = cross2(a, b, uv), y = cross2(b, c, uv), z = cross2(c, a, uv);
-        if ((x >= 0 && y >= 0 && z >= 0) || (x <= 0 && y <= 0 && z <= 0)) return true;
+        const double slack = 1e-9 * std::abs(x + y + z);  // a point on an edge between two triangles must be in one of them
+        if ((x >= -slack && y >= -slack && z >= -slack) || (x <= slack && y <= slack && z <= slack)) return true;
     }
     return false;
 }
@@ -114,9 +119,9 @@ void FacetTriangulation::keep_inside(ConformingMesh& mesh) {
         }
         const auto& c = triangles_[largest];
         const Vec3 middle = flat_[c[0]] + (1.0 / 3) * ((flat_[c[1]] - flat_[c[0]]) + (flat_[c[2]] - flat_[c[0]]));
-        // A rounded point of a boundary segment may lie inside the segment's line: then slivers over that segment close the hull.
-        const bool on_one_segment = mesh.share_segment(vertices_[c[0]], vertices_[c[1]], vertices_[c[2]]);
-        inside.push_back(!on_one_segment && is_inside(middle, mesh) ? 1 : 0);
+        // Rounded points of a straight outline may lie inside the line: then slivers, no thicker than rounding, close the hull.
+        const double base = std::sqrt(std::max({squared_distance(flat_[c[0]], flat_[c[1]]), squared_distance(flat_[c[1]], flat_[c[2]]), squared_distance(flat_[c[2]], flat_[c[0]])}));
+        inside.push_back(most > base * rounding_ && is_inside(middle, mesh) ? 1 : 0);
     }
     std::vector<std::uint32_t> renumbered(triangles_.size(), kNone);
     std::uint32_t kept = 0;

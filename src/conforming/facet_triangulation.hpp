@@ -39,6 +39,7 @@ private:
     std::vector<Triangle> triangles_;
     std::vector<std::array<std::uint32_t, 3>> neighbours_;  // of each triangle, opposite its corners
     std::vector<TetFace> faces_;
+    double rounding_ = 0;  // input units: outlines are straight to within this
     static constexpr std::uint32_t kNone = 0xffffffffU;
 };
 
