@@ -22,28 +22,43 @@ constexpr double kPickingRadius = 0.3;
 
 // ------------------------------------------------------------------------------------------------ queues
 
-void BoundaryRefiner::enqueue_encroached(const std::vector<TetId>& tets) {
-    const TetStore& store = mesh_.tets();
-    for (const TetId t : tets) {
-        if (!mesh_.has_labels(t)) continue;
-        const TetLabels& l = mesh_.labels(t);
-        const auto& c = store.corners(t);
-        for (unsigned e = 0; e < 6; ++e) {
-            if (!l.segments[e].valid()) continue;
-            const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
-            for (const unsigned k : {unsigned{kEdgeCorners[5 - e][0]}, unsigned{kEdgeCorners[5 - e][1]}})
-                if (c[k] != kInfiniteVertex && side_of_diametral_sphere(mesh_.point(a), mesh_.point(b), mesh_.point(c[k])) == Sign::positive) {
-                    segments_.push_back({{a, b, l.segments[e]}, c[k]});
-                    break;
-                }
-        }
-        for (unsigned f = 0; f < 4; ++f) {
-            if (!l.facets[f].valid() || c[f] == kInfiniteVertex) continue;
-            const auto fc = store.face_corners(TetFace{t, f});
-            if (side_of_equatorial_sphere(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), mesh_.point(c[f])) == Sign::positive)
-                faces_.push_back({{fc, l.facets[f]}, c[f]});
-        }
+/// Calls on_edge(edge, encroacher) and on_face(face, encroacher) for the labelled edges and faces of t that t's own corners encroach.
+template <class OnEdge, class OnFace>
+void BoundaryRefiner::visit_encroached(TetId t, OnEdge&& on_edge, OnFace&& on_face) const {
+    if (!mesh_.has_labels(t)) return;
+    const TetLabels& l = mesh_.labels(t);
+    const auto& c = mesh_.tets().corners(t);
+    for (unsigned e = 0; e < 6; ++e) {
+        if (!l.segments[e].valid()) continue;
+        const Vec3 &a = mesh_.point(c[kEdgeCorners[e][0]]), &b = mesh_.point(c[kEdgeCorners[e][1]]);
+        for (const unsigned k : {unsigned{kEdgeCorners[5 - e][0]}, unsigned{kEdgeCorners[5 - e][1]}})
+            if (c[k] != kInfiniteVertex && side_of_diametral_sphere(a, b, mesh_.point(c[k])) == Sign::positive) {
+                on_edge(e, c[k]);
+                break;
+            }
     }
+    for (unsigned f = 0; f < 4; ++f) {
+        if (!l.facets[f].valid() || c[f] == kInfiniteVertex) continue;
+        const auto fc = mesh_.tets().face_corners(TetFace{t, f});
+        if (side_of_equatorial_sphere(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), mesh_.point(c[f])) == Sign::positive) on_face(f, c[f]);
+    }
+}
+
+void BoundaryRefiner::enqueue_encroached(const std::vector<TetId>& tets) {
+    for (const TetId t : tets)
+        visit_encroached(
+            t,
+            [&](unsigned e, VertexId by) {
+                const auto& c = mesh_.tets().corners(t);
+                segments_.push_back({{c[kEdgeCorners[e][0]], c[kEdgeCorners[e][1]], mesh_.labels(t).segments[e]}, by});
+            },
+            [&](unsigned f, VertexId by) { faces_.push_back({{mesh_.tets().face_corners(TetFace{t, f}), mesh_.labels(t).facets[f]}, by}); });
+}
+
+bool BoundaryRefiner::has_encroached(TetId t) const {
+    bool found = false;
+    visit_encroached(t, [&](unsigned, VertexId) { found = true; }, [&](unsigned, VertexId) { found = true; });
+    return found;
 }
 
 void BoundaryRefiner::enqueue_all_encroached() {

@@ -45,6 +45,8 @@ public:
     /// Looks for encroached subsegments and subfaces among the new tetrahedra.
     void enqueue_encroached(const std::vector<TetId>& tets);
     void enqueue_all_encroached();
+    /// Does a corner of t encroach a labelled edge or face of t?
+    [[nodiscard]] bool has_encroached(TetId t) const;
 
     /// Subsegments and subfaces that cavity.point would encroach, except on its own carrier.
     void find_encroached(const Cavity& cavity, const Placement& where, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
@@ -60,6 +62,8 @@ private:
     struct WaitingSegment { Subsegment s; VertexId encroacher; };
     struct WaitingFace { Subface s; VertexId encroacher; };
 
+    template <class OnEdge, class OnFace>
+    void visit_encroached(TetId t, OnEdge&& on_edge, OnFace&& on_face) const;
     void recover_segments();
     bool recover_facet(FacetId f);
     void repair_broken();

@@ -107,6 +107,9 @@ public:
     /// @pre cavity is the last one found.
     [[nodiscard]] bool holds_carrier(const Cavity& cavity, const Placement& where) const;
 
+    /// Would this insertion destroy subfaces or subsegments that don't contain the point? @pre cavity is the last one found.
+    [[nodiscard]] bool would_break(const Cavity& cavity, const Placement& where);
+
     // --- labels, for recovery
     void label_edge(VertexId a, VertexId b, SegmentId s);  ///< on all tetrahedra around the edge; an invalid s takes the label away. Does nothing if there is no such edge
     void label_face(TetFace tf, FacetId f);                ///< on both sides; an invalid f takes the label away
@@ -154,6 +157,7 @@ private:
     void collect_interior(const Cavity& cavity, const Placement& where);
     void replace_subfaces(const Cavity& cavity, const Placement& where, FacetId facet);
     void commit(VertexId v, const Cavity& cavity, const Placement& where);
+    void plan(const Cavity& cavity, const Placement& where);
     void note_destroyed(const Placement& where);
     TetLabels& labels_for_writing(TetId t);
     void drop_labels(TetId t);

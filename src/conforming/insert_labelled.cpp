@@ -156,18 +156,29 @@ void ConformingMesh::note_destroyed(const Placement& where) {
         if (where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b)) broken_segments_.push_back(s.segment);
 }
 
-void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& where) {
+/// Reads everything that the insertion needs to know about the cavity, and finds how the surface will run.
+void ConformingMesh::plan(const Cavity& cavity, const Placement& where) {
     capture(cavity);
     loop_.clear();
     interior_.clear();
     interior_segments_.clear();
-    bool labelled = false;
-    for (const TetId t : cavity.tets) labelled = labelled || has_labels(t);
-    if (labelled) {
-        collect_interior(cavity, where);
-        for (const FacetId f : facets_of(where)) replace_subfaces(cavity, where, f);
-        note_destroyed(where);
-    }
+    if (std::none_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId t) { return has_labels(t); })) return;
+    collect_interior(cavity, where);
+    for (const FacetId f : facets_of(where)) replace_subfaces(cavity, where, f);
+}
+
+bool ConformingMesh::would_break(const Cavity& cavity, const Placement& where) {
+    plan(cavity, where);
+    for (const InteriorFace& f : interior_)
+        if (!f.used && f.boundary == InteriorFace::kNotOnBoundary) return true;
+    for (const Subsegment& s : interior_segments_)
+        if (where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b)) return true;
+    return false;
+}
+
+void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& where) {
+    plan(cavity, where);
+    note_destroyed(where);
     const bool splits = where.carrier == CarrierKind::segment;
     for (const TetId t : cavity.tets) drop_labels(t);
 

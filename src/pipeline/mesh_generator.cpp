@@ -12,6 +12,7 @@
 #include "pipeline/report_goals.hpp"
 #include "predicates/predicates.hpp"
 #include "refinement/refine.hpp"
+#include "shape/improve.hpp"
 #include "validation/valid_plc.hpp"
 #include "wellmesh/generate.hpp"
 
@@ -84,7 +85,14 @@ private:
             verdict = refiner.refine();
             count();
         });
-        stopped_by_ = verdict;
+        const double theta = options_.quality.min_dihedral_angle_deg;
+        if (verdict == RunGuard::Verdict::go_on && theta > 0)
+            timed(Stage::shape, [&] {
+                ShapeImprover improver(mesh, boundary, refiner, guard_, options_.seed);
+                verdict = improver.improve(theta);
+                result_.statistics.moved_vertices = improver.statistics().moves;
+                count();
+            });
         result_.mesh = extract_mesh(mesh);
         result_.statistics.guarded_insertions = refiner.statistics().guarded;
         result_.termination = termination(verdict);
@@ -123,7 +131,6 @@ private:
     const MeshOptions& options_;
     RunGuard guard_;
     MeshResult result_;
-    RunGuard::Verdict stopped_by_ = RunGuard::Verdict::go_on;
     std::uint64_t vertices_ = 0, tets_ = 0;
 };
 

@@ -9,10 +9,13 @@
 
 namespace wellmesh {
 
-/// Tests, exactly, every pair of triangles, wires and lone vertices whose boxes meet, and reports each pair of facets (or facet and
-/// segment, ...) once, with a point of the intersection. The triangles are those of the input, so merging facets by tolerance neither
-/// hides nor invents anything.
-void find_intersections(const CleanInput& input, const Soup& soup, Report& report);
+/// Reports each pair of facets (or facet and segment, ...) that meets where it must not once, with a point of the intersection. Exact.
+/// The triangles are those of the input, so merging facets by tolerance neither hides nor invents anything.
+///
+/// Two triangles meet outside of common vertices and edges iff an edge of one meets the other and shares no end with it, or they are
+/// coplanar and folded over a common edge, or have the same corners. So edges are searched for, in a tree of the triangles' boxes;
+/// many triangles about one vertex cost a comparison of numbers each.
+void find_intersections(const CleanInput& input, const Soup& soup, const EdgeTable& edges, Report& report);
 
 /// Reports vertices that lie within `rounding.contact()` of a facet or segment that they do not belong to, without touching it: what
 /// separates them is below the last bits of the coordinates. Triangles in the same merged facet are only tested against segments.

@@ -59,7 +59,7 @@ void ValidPlcBuilder::run() {
     input = clean_input(plc, rounding, report);
     soup = make_soup(input, plc, rounding, report);
     edges = make_edge_table(soup.triangles);
-    find_intersections(input, soup, report);
+    find_intersections(input, soup, edges, report);
     groups = merge_coplanar(input, soup, edges, plc, rounding);
     find_thin_features(input, soup, edges, groups, rounding, report);
     find_open_edges();
