@@ -2,9 +2,20 @@
 #include "validation/box_tree.hpp"
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "core/vec3_math.hpp"
+
 namespace wellmesh {
+
+SegmentClipper::SegmentClipper(const Vec3& p, const Vec3& q) : start_(p), along_(q - p) {
+    double largest = 0;
+    for (const Vec3& x : {p, q}) largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+    // a clipped place is off by a few ulp of the segment's length, a difference by an ulp of the coordinates
+    pad_ = 1e-12 * norm(along_) + 16 * std::numeric_limits<double>::epsilon() * largest;
+}
 
 BoxTree::BoxTree(std::span<const Box> boxes) : boxes_(boxes), order_(boxes.size()) {
     std::iota(order_.begin(), order_.end(), 0U);

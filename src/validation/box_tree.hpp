@@ -33,6 +33,28 @@ struct Box {
     }
 };
 
+/// Does a closed segment meet boxes? Says yes too often by `pad`, which must exceed the rounding of the clipping.
+class SegmentClipper {
+public:
+    SegmentClipper(const Vec3& p, const Vec3& q);
+    [[nodiscard]] bool meets(const Box& box) const {
+        double from = 0, to = 1;
+        return clip(start_.x, along_.x, box.low.x, box.high.x, from, to) && clip(start_.y, along_.y, box.low.y, box.high.y, from, to) &&
+               clip(start_.z, along_.z, box.low.z, box.high.z, from, to);
+    }
+
+private:
+    [[nodiscard]] bool clip(double start, double along, double low, double high, double& from, double& to) const {
+        if (along == 0) return start >= low - pad_ && start <= high + pad_;
+        const double t0 = (low - pad_ - start) / along, t1 = (high + pad_ - start) / along;
+        from = std::max(from, std::min(t0, t1));
+        to = std::min(to, std::max(t0, t1));
+        return from <= to;
+    }
+    Vec3 start_, along_;
+    double pad_;
+};
+
 class BoxTree {
 public:
     explicit BoxTree(std::span<const Box> boxes);

@@ -86,7 +86,8 @@ void IntersectionFinder::test_edge(std::size_t edge, const BoxTree& tree) {
     Box box;
     box.add(point(ends[0]));
     box.add(point(ends[1]));
-    tree.query([&](const Box& b) { return b.meets(box); },
+    const SegmentClipper line(point(ends[0]), point(ends[1]));
+    tree.query([&](const Box& b) { return b.meets(box) && line.meets(b); },
                [&](std::uint32_t t) {
                    if (t >= first_wire()) return;
                    const auto& v = soup_.triangles[t].v;

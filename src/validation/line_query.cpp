@@ -2,7 +2,6 @@
 #include "validation/line_query.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "core/check.hpp"
 #include "core/rng.hpp"
@@ -96,23 +95,8 @@ bool LineQuery::is_before(const Hit& a, const Hit& b, const Vec3& p, const Vec3&
 std::optional<std::vector<Hit>> LineQuery::pierce(const Vec3& p, const Vec3& q) const {
     std::vector<Hit> hits;
     bool degenerate = false;
-    const Vec3 d = q - p;
-    double largest = 0;
-    for (const Vec3& x : {p, q}) largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
-    const double pad = 1e-9 * norm(d) + 16 * std::numeric_limits<double>::epsilon() * largest;  // far above the rounding of what follows
-    const auto meets = [&](const Box& box) {
-        double from = 0, to = 1;
-        const auto clip = [&](double start, double along, double low, double high) {
-            if (along == 0) return start >= low - pad && start <= high + pad;
-            double t0 = (low - pad - start) / along, t1 = (high + pad - start) / along;
-            if (t0 > t1) std::swap(t0, t1);
-            from = std::max(from, t0);
-            to = std::min(to, t1);
-            return from <= to;
-        };
-        return clip(p.x, d.x, box.low.x, box.high.x) && clip(p.y, d.y, box.low.y, box.high.y) && clip(p.z, d.z, box.low.z, box.high.z);
-    };
-    tree_.query(meets, [&](std::uint32_t t) {
+    const SegmentClipper line(p, q);
+    tree_.query([&](const Box& box) { return line.meets(box); }, [&](std::uint32_t t) {
         if (degenerate) return;
         const Vec3 &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
         const Sign sp = orient3d(a, b, c, p), sq = orient3d(a, b, c, q);
