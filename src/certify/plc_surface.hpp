@@ -33,8 +33,8 @@ struct PlcReading {
     std::string problem;  ///< why there is none
 };
 
-/// @param flat_angle  radians. @param tolerance  input units: triangles that bend by less than 4 tolerances over the lower of their heights
-///                    are flat together, too.
+/// @param flat_angle  radians. @param relative_tolerance  of the diagonal: triangles that bend by less than 4 tolerances over the lower of
+///                    their heights are flat together, too; so are those that rounding may have bent.
 [[nodiscard]] PlcReading read_surface(const Plc& plc, double flat_angle, double relative_tolerance);
 
 }  // namespace wellmesh::certifying
