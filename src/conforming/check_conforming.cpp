@@ -30,6 +30,7 @@ std::string triple(const ConformingMesh& mesh, const std::array<VertexId, 3>& c)
 std::string check_conforming(ConformingMesh& mesh, bool gabriel) {
     const TetStore& tets = mesh.tets();
     const ValidPlc& plc = mesh.plc();
+    std::string leak;  // told last: what is missing from a facet explains it
     std::vector<double> area(plc.facets.size(), 0), length(plc.segments.size(), 0);
     std::map<std::pair<VertexId, VertexId>, SegmentId> edges;
     for (std::size_t i = 0; i < tets.slots(); ++i) {
@@ -41,7 +42,7 @@ std::string check_conforming(ConformingMesh& mesh, bool gabriel) {
             const FacetId facet = mesh.facet_at(mine);
             if (facet != mesh.facet_at(other)) return "labels differ on the two sides of face " + triple(mesh, tets.face_corners(mine));
             if (!facet.valid()) {
-                if (mesh.cell(t) != mesh.cell(other.tet())) return "cells differ across an unlabelled face";
+                if (mesh.cell(t) != mesh.cell(other.tet())) leak = "cells differ across an unlabelled face " + triple(mesh, tets.face_corners(mine));
                 continue;
             }
             const auto fc = tets.face_corners(mine);
@@ -84,7 +85,7 @@ std::string check_conforming(ConformingMesh& mesh, bool gabriel) {
         const double wanted = distance(mesh.point(plc.segments[s].ends[0]), mesh.point(plc.segments[s].ends[1]));
         if (!(std::abs(length[s] - wanted) <= 1e-6 * wanted)) return fmt::format("segment {} has length {}, its subsegments {}", s, wanted, length[s]);
     }
-    return {};
+    return leak;
 }
 
 }  // namespace wellmesh

@@ -124,6 +124,23 @@ public:
     /// changed, if the mesh without v can't represent every facet and segment that passes through the hole.
     bool remove(const Hole& hole);
 
+    /// Cells and labels of some tetrahedra, by their corners: the triangulation is a function of its points, so removing a vertex that was
+    /// just inserted, or inserting one again where it was, brings the very same tetrahedra back.
+    struct Snapshot {
+        struct Entry {
+            TetStore::Corners corners{};
+            CellId cell{};
+            bool labelled = false;
+            TetLabels labels{};
+        };
+        std::vector<Entry> entries;
+    };
+    void save(const std::vector<TetId>& tets, Snapshot& snapshot) const;
+    /// Undoes insert or reinsert of v; `before` was saved from the cavity's tetrahedra. @param where as it was given then.
+    void undo_insertion(VertexId v, const Placement& where, const Snapshot& before);
+    /// Undoes remove; `before` was saved from the star of v, which stands at its old point again.
+    void undo_removal(VertexId v, const Placement& where, const Snapshot& before);
+
     /// Facets and segments that lost a piece since the last call.
     [[nodiscard]] std::vector<FacetId> take_broken_facets();
     [[nodiscard]] std::vector<SegmentId> take_broken_segments();
@@ -157,6 +174,7 @@ private:
     void collect_interior(const Cavity& cavity, const Placement& where);
     void replace_subfaces(const Cavity& cavity, const Placement& where, FacetId facet);
     void commit(VertexId v, const Cavity& cavity, const Placement& where);
+    void restore(const Snapshot& snapshot);
     void plan(const Cavity& cavity, const Placement& where);
     void note_destroyed(const Placement& where);
     TetLabels& labels_for_writing(TetId t);
@@ -185,6 +203,8 @@ private:
     std::vector<Subsegment> interior_segments_;
     std::vector<LoopEdge> loop_;
     std::vector<FacetId> carrier_facets_;
+    Hole undo_hole_;
+    Cavity undo_cavity_;
 
     friend class HoleLabeller;
 };

@@ -154,6 +154,15 @@ void ConformingMesh::note_destroyed(const Placement& where) {
         if (!f.used && f.boundary == InteriorFace::kNotOnBoundary) broken_facets_.push_back(f.facet);
     for (const Subsegment& s : interior_segments_)
         if (where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b)) broken_segments_.push_back(s.segment);
+    // An edge of the loop that is a destroyed subsegment carries no face of the star: the surface is open there.
+    for (const LoopEdge& e : loop_) {
+        const auto at_edge = [&](const CapturedFace& c) {
+            for (std::size_t k = 0; k < 3; ++k)
+                if (same_edge(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], e.a, e.b)) return true;
+            return false;
+        };
+        if (std::none_of(captured_.begin(), captured_.end(), at_edge)) broken_facets_.push_back(e.facet);
+    }
 }
 
 /// Reads everything that the insertion needs to know about the cavity, and finds how the surface will run.

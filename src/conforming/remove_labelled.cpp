@@ -35,6 +35,11 @@ public:
         }
     }
 
+    /// The healed subsegment may have been an edge already, an ulp beside the vertex: then tetrahedra outside the hole need the label too.
+    void heal_segment() {
+        if (ends_.size() == 2) mesh_.label_edge(ends_[0], ends_[1], SegmentId{mesh_.info(hole_.vertex).carrier_id});
+    }
+
 private:
     static constexpr std::uint32_t kNone = 0xffffffffU;
     struct Loop {
@@ -236,6 +241,7 @@ bool ConformingMesh::remove(const Hole& hole) {
     tri_.remove_vertex(hole);
     fit_arrays();
     labeller.write(tri_.new_tets());
+    labeller.heal_segment();
     --vertex_count_;
     return true;
 }

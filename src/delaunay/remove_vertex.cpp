@@ -33,6 +33,7 @@ private:
         Slots corners;          // listed so that the wanted apex lies on the positive side
         std::uint64_t key;      // of the unordered triple
         std::uint32_t owner;    // what is behind: boundary index with top bit, or 4 * filling + face
+        VertexId behind;        // corner of the tetrahedron behind that is opposite to this face
     };
 
     static std::uint64_t key_of(Slots s) {
@@ -58,8 +59,10 @@ private:
                 s[k] = mesh_.local_slot(corners[k]);
                 has_infinity_ |= s[k] == 0;
             }
-            open_.push_back({s, key_of(s), static_cast<std::uint32_t>(hole_.boundary.size()) | Hole::kBoundaryBit});
-            hole_.boundary.push_back({inside, mesh_.tets_.across(inside)});
+            const TetFace outside = mesh_.tets_.across(inside);
+            open_.push_back({s, key_of(s), static_cast<std::uint32_t>(hole_.boundary.size()) | Hole::kBoundaryBit,
+                             mesh_.tets_.corner(outside.tet(), outside.face())});
+            hole_.boundary.push_back({inside, outside});
         }
     }
 
@@ -79,7 +82,18 @@ private:
         return false;  // all link vertices in one plane: the caller gives up later, when a face finds no apex
     }
 
-    std::uint32_t best_apex(Slots& s) {
+    /// Is d in the plane of hull face (a, b, w), on w's side of the line ab? All other points turn about ab by 0 to 180 degrees from there;
+    /// a point at 0 must not meet one at 180 in the tournament: they are coplanar.
+    [[nodiscard]] bool folds_back(std::uint32_t a, std::uint32_t b, const Vec3& w, std::uint32_t d) const {
+        if (mesh_.filter_.orient3d(at(a), at(b), w, at(d)) != Sign::zero) return false;
+        for (std::uint32_t z = 1; z < mesh_.local_vertices_.size(); ++z) {
+            const Sign side = mesh_.filter_.orient3d(at(a), at(b), w, at(z));
+            if (side != Sign::zero) return mesh_.filter_.orient3d(at(a), at(b), at(d), at(z)) == side;
+        }
+        return false;
+    }
+
+    std::uint32_t best_apex(Slots& s, VertexId behind) {
         const auto count = static_cast<std::uint32_t>(mesh_.local_vertices_.size());
         constexpr std::uint32_t kNobody = 0xffffffffU;
         std::uint32_t best = kNobody;
@@ -87,7 +101,7 @@ private:
             // (s0, s1, inf, d) positive means that hull face (s1, s0, d) has its positive side outside.
             while (s[2] != 0) s = {s[1], s[2], s[0]};
             for (std::uint32_t d = 1; d < count; ++d) {
-                if (d == s[0] || d == s[1] || collinear(at(s[0]), at(s[1]), at(d))) continue;
+                if (d == s[0] || d == s[1] || collinear(at(s[0]), at(s[1]), at(d)) || folds_back(s[0], s[1], mesh_.point(behind), d)) continue;
                 if (best == kNobody || beats_ghost(s[1], s[0], best, d)) best = d;
             }
             return best;
@@ -104,7 +118,7 @@ private:
 
     bool wrap(Open face) {
         Slots s = face.corners;
-        const std::uint32_t apex = best_apex(s);
+        const std::uint32_t apex = best_apex(s, face.behind);
         if (apex == 0xffffffffU) return false;
         const auto index = static_cast<std::uint32_t>(hole_.filling.size());
         // Corner order as in Triangulation::insert_vertex: infinity last.
@@ -124,7 +138,7 @@ private:
             const std::uint64_t key = key_of(mine);
             auto it = std::find_if(open_.begin(), open_.end(), [&](const Open& o) { return o.key == key; });
             if (it == open_.end()) {
-                open_.push_back({mine, key, 4 * index + f});
+                open_.push_back({mine, key, 4 * index + f, vertex(corners[f])});
             } else {
                 pair(index, f, it->owner);
                 *it = open_.back();

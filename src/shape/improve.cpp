@@ -21,7 +21,7 @@ constexpr unsigned kMoveSamples = 30, kPatientMoveSamples = 60;
 constexpr unsigned kPasses = 6;            // patience with moves saves vertices: splitting comes after
 constexpr unsigned kSplitRounds = 10;
 constexpr double kVertexBudget = 1.5;      // splits may not add more than half the vertices again
-constexpr double kWorthwhile = 1e-9;       // least gain in cosine: rounding is no progress
+constexpr double kWorthwhile = 1e-4;       // least gain in cosine: smaller steps are no progress
 
 constexpr unsigned kTriesUntouched = 3;    // failures after which a tetrahedron rests until its neighbourhood changes
 
@@ -61,6 +61,11 @@ bool ShapeImprover::within_bounds(const Vec3& a, const Vec3& b, const Vec3& c, c
     const CellSize& size = refiner_.sizes()[cell.index()];
     return squared_radius <= rho * rho * squared_edge && squared_radius <= kSizeTolerance * kSizeTolerance * size.max_squared_circumradius &&
            six_volumes <= 6 * size.max_volume;
+}
+
+bool ShapeImprover::is_within_bounds(TetId t) const {
+    const auto& c = mesh_.tets().corners(t);
+    return within_bounds(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]), mesh_.cell(t));
 }
 
 double ShapeImprover::star_cosine(const Cavity& cavity, const Placement& where, double limit) const {
@@ -156,23 +161,11 @@ void ShapeImprover::propose(VertexId v, TetId worst, const Placement& where, uns
     }
 }
 
-/// Inserts the vertex, which is out, at p. @return false if p is taken.
-bool ShapeImprover::put(VertexId v, const Vec3& p, const Placement& where) {
-    const TetId near = mesh_.triangulation().new_tets().empty() ? TetId{} : mesh_.triangulation().new_tets()[0];
-    if (!mesh_.triangulation().find_conflict_cavity(p, near, cavity_)) return false;
-    mesh_.reinsert(v, cavity_, where);
-    return true;
-}
-
 /// Are all of these (finite, domain) tetrahedra better than `cosine` and within bounds, and nothing labelled in them encroached?
 bool ShapeImprover::fits(const std::vector<TetId>& tets, double cosine) const {
     for (const TetId t : tets) {
         if (!mesh_.tets().is_live(t)) continue;
-        const auto& c = mesh_.tets().corners(t);
-        if (!mesh_.tets().is_ghost(t) && mesh_.in_domain(t)) {
-            if (cosine_of(t) > cosine) return false;
-            if (!within_bounds(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]), mesh_.cell(t))) return false;
-        }
+        if (!mesh_.tets().is_ghost(t) && mesh_.in_domain(t) && (cosine_of(t) > cosine || !is_within_bounds(t))) return false;
         if (boundary_.has_encroached(t)) return false;
     }
     return true;
@@ -206,12 +199,13 @@ bool ShapeImprover::move_vertex(VertexId v, TetId worst, unsigned samples) {
         if (!mesh_.tets().is_ghost(t) && mesh_.in_domain(t)) old_cosine = std::max(old_cosine, cosine_of(t));
     propose(v, worst, where, samples);
     const Vec3 home = mesh_.point(v);
+    mesh_.save(star_, star_before_);
     if (!mesh_.remove(hole_)) return false;
     ++statistics_.attempts;
     filling_ = tri.new_tets();
     filling_cosine_.resize(filling_.size());
     for (std::size_t i = 0; i < filling_.size(); ++i)
-        filling_cosine_[i] = mesh_.tets().is_ghost(filling_[i]) || !mesh_.in_domain(filling_[i]) ? 0 : cosine_of(filling_[i]);
+        filling_cosine_[i] = mesh_.tets().is_ghost(filling_[i]) || !mesh_.in_domain(filling_[i]) ? 0 : is_within_bounds(filling_[i]) ? cosine_of(filling_[i]) : kNoAngleCosine;
     const CellId cell = boundary ? CellId{} : CellId{where.carrier_id};
     ranked_.clear();
     double limit = old_cosine - kWorthwhile;
@@ -234,7 +228,9 @@ bool ShapeImprover::move_vertex(VertexId v, TetId worst, unsigned samples) {
     std::stable_sort(ranked_.begin(), ranked_.end(), [](const Candidate& a, const Candidate& b) { return a.cosine < b.cosine; });
     constexpr std::size_t kTrials = 3;
     for (std::size_t k = 0; k < std::min(kTrials, ranked_.size()); ++k) {
-        if (!put(v, ranked_[k].point, where)) continue;
+        if (!tri.find_conflict_cavity(ranked_[k].point, filling_[0], cavity_)) continue;
+        mesh_.save(cavity_.tets, cavity_before_);
+        mesh_.reinsert(v, cavity_, where);
         std::vector<TetId> changed = tri.new_tets();
         for (const TetId t : filling_)
             if (std::find(changed.begin(), changed.end(), t) == changed.end()) changed.push_back(t);
@@ -244,10 +240,11 @@ bool ShapeImprover::move_vertex(VertexId v, TetId worst, unsigned samples) {
             return true;
         }
         ++statistics_.undone;
-        WELLMESH_CHECK(Stage::shape, tri.find_hole(v, hole_) && mesh_.remove(hole_));
-        filling_ = tri.new_tets();
+        mesh_.undo_insertion(v, where, cavity_before_);
+        for (const TetId t : tri.new_tets()) filling_.push_back(t);  // ids may have changed hands
     }
-    WELLMESH_CHECK(Stage::shape, put(v, home, where));
+    tri.set_point(v, home);
+    mesh_.undo_removal(v, where, star_before_);
     return false;
 }
 

@@ -55,12 +55,12 @@ private:
     [[nodiscard]] bool still_there(const Bad& bad) const;
     [[nodiscard]] double cosine_of(TetId t) const;
     [[nodiscard]] bool within_bounds(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, CellId cell) const;
+    [[nodiscard]] bool is_within_bounds(TetId t) const;
     /// Largest cosine of the star of cavity.point, or more than `limit` as soon as that is certain.
     [[nodiscard]] double star_cosine(const Cavity& cavity, const Placement& where, double limit) const;
     void propose(VertexId v, TetId worst, const Placement& where, unsigned samples);
     [[nodiscard]] Vec3 on_carrier(const Placement& where, const Vec3& p) const;
     [[nodiscard]] bool placement_of(VertexId v, const std::vector<TetId>& star, Placement& where) const;
-    bool put(VertexId v, const Vec3& p, const Placement& where);
     [[nodiscard]] bool fits(const std::vector<TetId>& tets, double cosine) const;
     void touch(const std::vector<TetId>& tets);
 
@@ -79,7 +79,8 @@ private:
     std::unordered_map<std::uint64_t, Stuck> stuck_;  // by corners; looked up, never iterated
     std::vector<Bad> heap_;
     Hole hole_;
-    Cavity cavity_, best_cavity_;
+    Cavity cavity_;
+    ConformingMesh::Snapshot star_before_, cavity_before_;
     std::vector<Vec3> proposals_;
     std::vector<Candidate> ranked_;
     std::vector<double> filling_cosine_;

@@ -83,8 +83,21 @@ std::vector<Vec3> sphere_points(std::size_t n, std::uint64_t seed) {
     return points;
 }
 
+/// Random points on the faces and edges of two crossed bars: coplanar and collinear everywhere, not cospherical, the hull not the shape.
+std::vector<Vec3> crossed_bars(std::size_t n, std::uint64_t seed) {
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto u = [&](std::uint64_t k) { return unit_double(mix64(seed, 8 * i + k)); };
+        Vec3 p{35 * u(0) - 17.5, u(1) < 0.5 ? -0.35 : 0.35, u(2) < 0.5 ? -0.1 : 0.1};  // on an edge
+        if (u(3) < 0.3) p.y = 0.7 * u(4) - 0.35;                                         // on a face
+        if (u(5) < 0.5) std::swap(p.x, p.y);
+        points.push_back(p);
+    }
+    return points;
+}
+
 std::vector<std::vector<Vec3>> all_clouds() {
-    return {random_points(1500, 1), grid(9), rotated_grid(9), sphere_points(500, 7)};
+    return {random_points(1500, 1), grid(9), rotated_grid(9), sphere_points(500, 7), crossed_bars(800, 3)};
 }
 
 void expect_valid(const Triangulation& mesh) {

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exact inverses of insertion and removal, labels included.
+#include <algorithm>
+
+#include "conforming/conforming_mesh.hpp"
+#include "core/check.hpp"
+
+namespace wellmesh {
+namespace {
+
+TetStore::Corners sorted(TetStore::Corners c) {
+    std::sort(c.begin(), c.end());
+    return c;
+}
+
+}  // namespace
+
+void ConformingMesh::save(const std::vector<TetId>& tets, Snapshot& snapshot) const {
+    snapshot.entries.clear();
+    for (const TetId t : tets) {
+        Snapshot::Entry e{sorted(tri_.tets().corners(t)), cell(t), has_labels(t), {}};
+        if (e.labelled) {
+            // Faces and edges are kept in the order of the sorted corners.
+            const auto& c = tri_.tets().corners(t);
+            const TetLabels& l = labels(t);
+            const auto rank = [&](unsigned i) { return static_cast<std::size_t>(std::find(e.corners.begin(), e.corners.end(), c[i]) - e.corners.begin()); };
+            for (unsigned f = 0; f < 4; ++f) e.labels.facets[rank(f)] = l.facets[f];
+            for (unsigned k = 0; k < 6; ++k) e.labels.segments[kEdgeOf[rank(kEdgeCorners[k][0])][rank(kEdgeCorners[k][1])]] = l.segments[k];
+        }
+        snapshot.entries.push_back(e);
+    }
+}
+
+/// Gives the triangulation's new tetrahedra, which must be those of the snapshot, their cells and labels back.
+void ConformingMesh::restore(const Snapshot& snapshot) {
+    fit_arrays();
+    const auto& fresh = tri_.new_tets();
+    WELLMESH_CHECK(Stage::shape, fresh.size() == snapshot.entries.size());
+    const TetStore& tets = tri_.tets();
+    for (const TetId t : fresh) {
+        const auto& c = tets.corners(t);
+        const auto key = sorted(c);
+        const auto e = std::find_if(snapshot.entries.begin(), snapshot.entries.end(), [&](const Snapshot::Entry& x) { return x.corners == key; });
+        WELLMESH_CHECK(Stage::shape, e != snapshot.entries.end());
+        cell_[t.index()] = e->cell;
+        if (!e->labelled) continue;
+        TetLabels& l = labels_for_writing(t);
+        const auto rank = [&](unsigned i) { return static_cast<std::size_t>(std::find(key.begin(), key.end(), c[i]) - key.begin()); };
+        for (unsigned f = 0; f < 4; ++f) l.facets[f] = e->labels.facets[rank(f)];
+        for (unsigned k = 0; k < 6; ++k) l.segments[k] = e->labels.segments[kEdgeOf[rank(kEdgeCorners[k][0])][rank(kEdgeCorners[k][1])]];
+    }
+    // The insertion may have taken a face's label away outside the cavity too.
+    for (const TetId t : fresh) {
+        if (!has_labels(t)) continue;
+        for (unsigned f = 0; f < 4; ++f) {
+            const FacetId mine = labels(t).facets[f];
+            const TetFace outside = tets.across(t, f);
+            if (mine.valid() && facet_at(outside) != mine) labels_for_writing(outside.tet()).facets[outside.face()] = mine;
+        }
+    }
+}
+
+void ConformingMesh::undo_insertion(VertexId v, const Placement& where, const Snapshot& before) {
+    WELLMESH_CHECK(Stage::shape, tri_.find_hole(v, undo_hole_));
+    for (const TetId t : undo_hole_.star) drop_labels(t);
+    tri_.remove_vertex(undo_hole_);
+    --vertex_count_;
+    restore(before);
+    if (where.carrier == CarrierKind::segment) label_edge(where.a, where.b, SegmentId{where.carrier_id});
+}
+
+void ConformingMesh::undo_removal(VertexId v, const Placement& where, const Snapshot& before) {
+    WELLMESH_CHECK(Stage::shape, tri_.find_conflict_cavity(point(v), tri_.new_tets()[0], undo_cavity_));
+    for (const TetId t : undo_cavity_.tets) drop_labels(t);
+    tri_.insert_vertex(v, undo_cavity_);
+    ++vertex_count_;
+    restore(before);
+    if (where.carrier == CarrierKind::segment) label_edge(where.a, where.b, SegmentId{});
+}
+
+}  // namespace wellmesh
