@@ -202,7 +202,10 @@ def main():
     arguments = parser.parse_args()
     if arguments.scale <= 0 or arguments.repeats < 1 or (arguments.n or 1000) < 4:
         parser.error("--scale, --repeats and -n are positive")
-    version = checked(run([arguments.program, "--version"])).output.strip()
+    try:
+        version = checked(run([arguments.program, "--version"])).output.strip()
+    except (Failed, OSError) as failure:
+        parser.error(str(failure))
     data = {"machine": processor(), "load_before": os.getloadavg()[0], "wellmesh": version, "rival": package_version("tetgen"), "scale": arguments.scale,
             "repeats": arguments.repeats, "seed": arguments.seed}
     print(f"{data['machine']}; load before {data['load_before']:.2f}; {version}; rival {data['rival']}")

@@ -245,6 +245,8 @@ class Bench:
         result, report = self.mesh(model, [*common, "--min-dihedral", "20"])
         if result.code != 0:
             failures.append(f"exit {result.code}: {result.errors[-300:] or (report or {}).get('termination', '')}")
+        elif not report:
+            failures.append("exit 0 without a mesh and a report")
         cells = f"{start} {result.code:4d}"
         tolerance = transform.tolerance or 1e-9
         if report:
@@ -289,7 +291,7 @@ class Bench:
             return "", [f"exit {result.code} with --max-volume {greatest!r} --min-dihedral 0: {result.errors[-300:]}"]
         rival, same = self.rival_vertices(domain, transform, tets, model, greatest)
         if not rival:
-            return f" {report['vertices']:8d}   failed", []
+            return f" {report['vertices']:8d}   failed", [f"{self.arguments.tetgen} meshed neither this domain nor the one as it is"]
         ratio = report["vertices"] / rival
         self.worst["rival"] = max(self.worst["rival"], ratio)
         failures = [f"{report['vertices']} vertices with --max-volume {greatest!r} are {ratio:.3f} times TetGen's {rival}"] if ratio > RATIO_LIMIT else []
