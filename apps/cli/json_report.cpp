@@ -129,6 +129,8 @@ Json to_json(const MeshStatistics& statistics) {
     json["guarded_insertions"] = statistics.guarded_insertions;
     json["exact_predicate_calls"] = statistics.exact_predicate_calls;
     json["coplanar_tolerance"] = statistics.coplanar_tolerance;
+    json["certificate_tolerance"] = statistics.certificate_tolerance;
+    json["certificate_flat_angle_rad"] = statistics.certificate_flat_angle_rad;
     json["notes"] = statistics.notes;
     return json;
 }

@@ -36,6 +36,9 @@ struct MeshStatistics {
     std::uint64_t guarded_insertions = 0;     ///< refused: would have made an edge below the bound of Theorem 4.2
     std::uint64_t exact_predicate_calls = 0;  ///< decided by expansion arithmetic
     double coplanar_tolerance = 0;            ///< the largest local tolerance that was used, input units
+    /// What the certificate allowed because the input's own rounding demands it: distance of a subface from its facet, relative to the
+    /// diagonal, and bend between two subfaces of one facet. A checker of rounded input needs the same two numbers.
+    double certificate_tolerance = 0, certificate_flat_angle_rad = 0;
     std::vector<std::string> notes;           ///< what was merged, dropped or assumed, one sentence each
 };
 

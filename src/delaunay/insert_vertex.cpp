@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Changes that add: starting simplex, insertion into a found cavity, bulk insertion.
 #include <algorithm>
+#include <bit>
+#include <numeric>
 
 #include "core/check.hpp"
 #include "delaunay/collinear.hpp"
@@ -11,14 +13,12 @@ namespace wellmesh {
 VertexId Triangulation::add_point(const Vec3& p) {
     points_.push_back(p);
     vertex_tet_.emplace_back();
-    slot_of_vertex_.push_back(0);
     return VertexId{points_.size() - 1};
 }
 
 void Triangulation::reserve(std::size_t vertices) {
     points_.reserve(vertices);
     vertex_tet_.reserve(vertices);
-    slot_of_vertex_.reserve(vertices);
     tets_.reserve(7 * vertices);  // 6.77 tetrahedra a vertex for random points
 }
 
@@ -44,15 +44,6 @@ void Triangulation::start(VertexId a, VertexId b, VertexId c, VertexId d) {
     last_located_ = inner;
 }
 
-unsigned Triangulation::local_slot(VertexId v) {
-    if (v == kInfiniteVertex) return 0;  // slot 0 is reserved for it
-    std::uint32_t& slot = slot_of_vertex_[v.index()];
-    if (slot < local_vertices_.size() && local_vertices_[slot] == v) return slot;
-    slot = static_cast<std::uint32_t>(local_vertices_.size());
-    local_vertices_.push_back(v);
-    return slot;
-}
-
 TetId Triangulation::create_tet(std::size_t recycled, const std::vector<TetId>& pool) {
     return recycled < pool.size() ? pool[recycled] : tets_.allocate();
 }
@@ -61,8 +52,7 @@ void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
     const std::size_t n = cavity.boundary.size();
     new_tets_.clear();
     outside_.clear();
-    local_vertices_.clear();
-    local_vertices_.push_back(kInfiniteVertex);
+    local_.clear();
     // Read all faces before any tetrahedron is overwritten: new ones take the ids of deleted ones.
     static_assert(sizeof(std::array<VertexId, 3>) == 12);
     thread_local std::vector<std::array<VertexId, 3>> faces;
@@ -90,26 +80,28 @@ void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
     for (std::size_t i = n; i < cavity.tets.size(); ++i) tets_.release(cavity.tets[i]);
 
     // Two new tetrahedra meet in a face (v, x, y) iff their boundary faces share the edge xy, which they list in opposite directions.
-    for (std::size_t i = 0; i < n; ++i)
-        for (const VertexId x : faces[i]) local_slot(x);
-    const std::size_t m = local_vertices_.size();
+    thread_local std::vector<std::array<std::uint32_t, 3>> slots;
+    slots.resize(n);
+    for (std::size_t i = 0; i < n; ++i) slots[i] = {local_(faces[i][0]), local_(faces[i][1]), local_(faces[i][2])};
+    const std::size_t m = local_.size();
     constexpr std::size_t kLargestTable = 128;
+    const std::size_t stride = std::max<std::size_t>(32, std::bit_ceil(m));  // usually 32: 4 kB, in the first-level cache
     auto face_opposite = [&](std::size_t i, unsigned k) {
         // Face of new tetrahedron i opposite to corner faces[i][k]; see the two layouts above.
         const bool ghost = faces[i][2] == kInfiniteVertex;
         return TetFace{new_tets_[i], ghost ? (k == 0 ? 1U : k == 1 ? 0U : 3U) : k};
     };
     if (m <= kLargestTable) {
-        edge_table_.resize(kLargestTable * kLargestTable);
+        edge_table_.resize(std::max(edge_table_.size(), stride * stride));
         for (std::size_t i = 0; i < n; ++i) {
-            const unsigned s[3] = {local_slot(faces[i][0]), local_slot(faces[i][1]), local_slot(faces[i][2])};
-            for (unsigned k = 0; k < 3; ++k) edge_table_[s[(k + 1) % 3] * kLargestTable + s[(k + 2) % 3]] = face_opposite(i, k);
+            const auto& s = slots[i];
+            for (unsigned k = 0; k < 3; ++k) edge_table_[s[(k + 1) % 3] * stride + s[(k + 2) % 3]] = face_opposite(i, k);
         }
         for (std::size_t i = 0; i < n; ++i) {
-            const unsigned s[3] = {local_slot(faces[i][0]), local_slot(faces[i][1]), local_slot(faces[i][2])};
+            const auto& s = slots[i];
             for (unsigned k = 0; k < 3; ++k) {
                 const unsigned from = s[(k + 1) % 3], to = s[(k + 2) % 3];
-                if (from < to) tets_.connect(face_opposite(i, k), edge_table_[to * kLargestTable + from]);
+                if (from < to) tets_.connect(face_opposite(i, k), edge_table_[to * stride + from]);
             }
         }
     } else {
@@ -132,12 +124,21 @@ void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
 
 bool Triangulation::insert_all(std::span<const Vec3> points) {
     points_.assign(points.begin(), points.end());
-    vertex_tet_.assign(points.size(), TetId{});
-    slot_of_vertex_.assign(points.size(), 0);
+    return insert_order(biased_spatial_order(points));
+}
+
+bool Triangulation::insert_all_in_order(std::span<const Vec3> points) {
+    points_.assign(points.begin(), points.end());
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0U);
+    return insert_order(order);
+}
+
+bool Triangulation::insert_order(std::span<const std::uint32_t> order) {
+    vertex_tet_.assign(points_.size(), TetId{});
     tets_.clear();
-    tets_.reserve(7 * points.size());
+    tets_.reserve(7 * points_.size());
     duplicates_ = 0;
-    const std::vector<std::uint32_t> order = biased_spatial_order(points);
     if (order.size() < 4) return false;
 
     // Four points that are not coplanar, early in the order.
@@ -156,7 +157,7 @@ bool Triangulation::insert_all(std::span<const Vec3> points) {
     for (const std::uint32_t i : order) {
         const VertexId v{i};
         if (is_inserted(v)) continue;
-        if (!find_conflict_cavity(points_[i], near, cavity)) {
+        if (!find_conflict_cavity(point(v), near, cavity)) {
             ++duplicates_;
             continue;
         }

@@ -40,12 +40,11 @@ private:
         std::sort(s.begin(), s.end());
         return (std::uint64_t{s[0]} << 42) | (std::uint64_t{s[1]} << 21) | s[2];
     }
-    [[nodiscard]] VertexId vertex(std::uint32_t slot) const { return mesh_.local_vertices_[slot]; }
+    [[nodiscard]] VertexId vertex(std::uint32_t slot) const { return mesh_.local_.vertex(slot); }
     [[nodiscard]] const Vec3& at(std::uint32_t slot) const { return mesh_.points_[vertex(slot).index()]; }
 
     void collect_boundary() {
-        mesh_.local_vertices_.clear();
-        mesh_.local_vertices_.push_back(kInfiniteVertex);
+        mesh_.local_.clear();
         hole_.boundary.clear();
         hole_.filling.clear();
         hole_.filling_opposite.clear();
@@ -56,7 +55,7 @@ private:
             Slots s{};
             const auto corners = mesh_.tets_.face_corners(inside);
             for (std::size_t k = 0; k < 3; ++k) {
-                s[k] = mesh_.local_slot(corners[k]);
+                s[k] = mesh_.local_(corners[k]);
                 has_infinity_ |= s[k] == 0;
             }
             const TetFace outside = mesh_.tets_.across(inside);
@@ -71,7 +70,7 @@ private:
         const Sign side = mesh_.filter_.orient3d(at(a), at(b), at(c), at(d));
         if (side != Sign::zero) return side == Sign::positive;
         // Coplanar: any point below the plane makes a tetrahedron whose circumsphere cuts the plane in the circle of abc.
-        for (std::uint32_t z = 1; z < mesh_.local_vertices_.size(); ++z) {
+        for (std::uint32_t z = 1; z < mesh_.local_.size(); ++z) {
             const Sign below = mesh_.filter_.orient3d(at(a), at(b), at(c), at(z));
             if (below == Sign::zero) continue;
             const bool inside = below == Sign::positive
@@ -86,7 +85,7 @@ private:
     /// a point at 0 must not meet one at 180 in the tournament: they are coplanar.
     [[nodiscard]] bool folds_back(std::uint32_t a, std::uint32_t b, const Vec3& w, std::uint32_t d) const {
         if (mesh_.filter_.orient3d(at(a), at(b), w, at(d)) != Sign::zero) return false;
-        for (std::uint32_t z = 1; z < mesh_.local_vertices_.size(); ++z) {
+        for (std::uint32_t z = 1; z < mesh_.local_.size(); ++z) {
             const Sign side = mesh_.filter_.orient3d(at(a), at(b), w, at(z));
             if (side != Sign::zero) return mesh_.filter_.orient3d(at(a), at(b), at(d), at(z)) == side;
         }
@@ -94,7 +93,7 @@ private:
     }
 
     std::uint32_t best_apex(Slots& s, VertexId behind) {
-        const auto count = static_cast<std::uint32_t>(mesh_.local_vertices_.size());
+        const auto count = static_cast<std::uint32_t>(mesh_.local_.size());
         constexpr std::uint32_t kNobody = 0xffffffffU;
         std::uint32_t best = kNobody;
         if (s[0] == 0 || s[1] == 0 || s[2] == 0) {

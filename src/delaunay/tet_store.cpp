@@ -12,25 +12,22 @@ TetId TetStore::allocate() {
         return t;
     }
     constexpr std::size_t kMaxTets = (std::size_t{1} << 30) - 1;  // TetFace packs 4 t + f into 32 bits, all ones is "none"
-    if (corner_.size() >= kMaxTets) throw MeshError(ErrorCode::mesh_too_large, Stage::delaunay, "more than 2^30 tetrahedra: ask for a coarser mesh");
-    corner_.emplace_back();
-    opposite_.emplace_back();
-    return TetId{corner_.size() - 1};
+    if (tet_.size() >= kMaxTets) throw MeshError(ErrorCode::mesh_too_large, Stage::delaunay, "more than 2^30 tetrahedra: ask for a coarser mesh");
+    tet_.emplace_back();
+    return TetId{tet_.size() - 1};
 }
 
 void TetStore::release(TetId t) {
-    corner_[t.index()] = Corners{};
+    tet_[t.index()].corner = Corners{};
     free_.push_back(t);
 }
 
 void TetStore::reserve(std::size_t tets) {
-    corner_.reserve(tets);
-    opposite_.reserve(tets);
+    tet_.reserve(tets);
 }
 
 void TetStore::clear() {
-    corner_.clear();
-    opposite_.clear();
+    tet_.clear();
     free_.clear();
 }
 

@@ -47,6 +47,50 @@ struct Hole {
     static constexpr std::uint32_t kBoundaryBit = 0x80000000U;
 };
 
+/// Numbers 0, 1, 2, ... for the few vertices of one cavity, in order of first mention; 0 is the vertex at infinity. A small hash table
+/// that stays in the first-level cache, unlike an array over all vertices; emptied by a new stamp.
+class LocalNumbers {
+public:
+    void clear() {
+        vertices_.clear();
+        vertices_.push_back(kInfiniteVertex);
+        if (++stamp_ == 0) {
+            table_.assign(table_.size(), Entry{});
+            stamp_ = 1;
+        }
+    }
+    std::uint32_t operator()(VertexId v) {
+        if (v == kInfiniteVertex) return 0;
+        if (2 * vertices_.size() > table_.size()) grow();
+        for (std::size_t i = (v.value() * 0x9e3779b1U) & (table_.size() - 1);; i = (i + 1) & (table_.size() - 1)) {
+            Entry& e = table_[i];
+            if (e.stamp != stamp_) {
+                e = {v, stamp_, static_cast<std::uint32_t>(vertices_.size())};
+                vertices_.push_back(v);
+                return e.number;
+            }
+            if (e.vertex == v) return e.number;
+        }
+    }
+    [[nodiscard]] std::size_t size() const { return vertices_.size(); }
+    [[nodiscard]] VertexId vertex(std::uint32_t number) const { return vertices_[number]; }
+
+private:
+    struct Entry {
+        VertexId vertex{};
+        std::uint32_t stamp = 0, number = 0;
+    };
+    void grow() {
+        const std::vector<VertexId> known(vertices_.begin() + 1, vertices_.end());
+        table_.assign(2 * table_.size(), Entry{});
+        clear();
+        for (const VertexId v : known) (*this)(v);
+    }
+    std::vector<Entry> table_ = std::vector<Entry>(256);
+    std::vector<VertexId> vertices_;
+    std::uint32_t stamp_ = 0;
+};
+
 class Triangulation {
 public:
     Triangulation() = default;
@@ -59,6 +103,8 @@ public:
     /// Inserts all of `points` (duplicates are skipped) in a spatially sorted random order; vertex i is points[i].
     /// @return false if all points are coplanar; then nothing was triangulated. Duplicates: see `duplicate_count`.
     bool insert_all(std::span<const Vec3> points);
+    /// The same for points that are in biased_spatial_order() already: neighbours in space are neighbours in memory then.
+    bool insert_all_in_order(std::span<const Vec3> points);
 
     // --- vertices
     VertexId add_point(const Vec3& p);  ///< stores coordinates, no more
@@ -106,8 +152,7 @@ private:
     void ensure_marks();
     void next_epoch();
     [[nodiscard]] bool ghost_in_conflict(TetId t, const Vec3& p) const;
-    unsigned local_slot(VertexId v);
-    void connect_star(std::size_t faces);
+    bool insert_order(std::span<const std::uint32_t> order);
 
     TetStore tets_;
     PredicateFilter filter_;
@@ -122,10 +167,8 @@ private:
     std::vector<TetId> new_tets_;
     std::vector<TetId> star_stack_;
     std::vector<TetFace> outside_;
-    std::vector<std::uint32_t> slot_of_vertex_;  // sparse-set: position in local_vertices_, checked there
-    std::vector<VertexId> local_vertices_;
+    LocalNumbers local_;
     std::vector<TetFace> edge_table_;
-    std::vector<std::array<std::uint32_t, 2>> long_edges_;
     mutable TetId last_located_{};
 
     friend class HoleFiller;

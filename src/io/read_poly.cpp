@@ -125,13 +125,16 @@ private:
                         if (!(numbering_.*lookup)(number)) return std::pair{f, number};
             return std::nullopt;
         };
+        // Facets that use a number given twice may mean either vertex: guessing would mesh another domain without a word.
+        if (numbering_.repeats())
+            fail_at_line(in_.source(), numbering_.irregular_line(), fmt::format("the list of points repeats numbers: the first out of order is {}:{}; number the points one after the other", nodes_name_, numbering_.irregular_line()));
         Lookup lookup = &NodeNumbering::as_stated;
         if (first_unknown(lookup)) {
             lookup = &NodeNumbering::as_counted;
             if (const auto unknown = first_unknown(lookup))
                 fail_at_line(in_.source(), plc_.facet_lines[unknown->first],
-                             fmt::format("vertex {} is used, but the list of points {} (first out of order: {}:{})", unknown->second,
-                                         numbering_.repeats() ? "repeats numbers" : "lacks that number", nodes_name_, numbering_.irregular_line()));
+                             fmt::format("vertex {} is used, but the list of points lacks that number (first out of order: {}:{})", unknown->second, nodes_name_,
+                                         numbering_.irregular_line()));
         }
         for (PlcFacet& facet : plc_.facets)
             for (auto& polygon : facet.polygons)

@@ -2,7 +2,10 @@
 #include "pipeline/extract_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "core/vec3_math.hpp"
 
 namespace wellmesh {
 namespace {
@@ -85,6 +88,30 @@ TetMesh extract_mesh(const ConformingMesh& mesh) {
         out.subsegment_segments.push_back(static_cast<std::int32_t>(e.segment.value()) + 1);
     }
     return out;
+}
+
+double largest_bend_rad(const TetMesh& mesh) {
+    struct Side {
+        std::array<std::uint32_t, 2> edge{};
+        std::int32_t facet = 0;
+        std::uint32_t apex = 0;
+    };
+    std::vector<Side> sides;
+    for (std::size_t f = 0; f < mesh.subfaces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t a = mesh.subfaces[f][(k + 1) % 3], b = mesh.subfaces[f][(k + 2) % 3];
+            const std::array<std::uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
+            if (!std::binary_search(mesh.subsegments.begin(), mesh.subsegments.end(), edge)) sides.push_back({edge, mesh.subface_facets[f], mesh.subfaces[f][k]});
+        }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge != b.edge ? a.edge < b.edge : a.apex < b.apex; });
+    double largest = 0;
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+        if (sides[i].edge != sides[i + 1].edge || sides[i].facet != sides[i + 1].facet) continue;
+        const Vec3 &a = mesh.vertices[sides[i].edge[0]], &b = mesh.vertices[sides[i].edge[1]];
+        const Vec3 m = cross(b - a, mesh.vertices[sides[i].apex] - a), n = cross(mesh.vertices[sides[i + 1].apex] - a, b - a);
+        largest = std::max(largest, std::atan2(norm(cross(m, n)), dot(m, n)));
+    }
+    return largest;
 }
 
 }  // namespace wellmesh

@@ -9,4 +9,7 @@ namespace wellmesh {
 /// The domain's part of the mesh, vertices renumbered in order of insertion; ghosts, holes and the outside are left behind.
 [[nodiscard]] TetMesh extract_mesh(const ConformingMesh& mesh);
 
+/// Largest angle by which two subfaces of one facet bend in an edge that is no subsegment: 0 but for rounding.
+[[nodiscard]] double largest_bend_rad(const TetMesh& mesh);
+
 }  // namespace wellmesh

@@ -47,7 +47,7 @@ public:
         const std::uint64_t exact_before = exact_predicate_calls();
         const ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_); });
         result_.statistics.coplanar_tolerance = valid.coplanar_tolerance;
-        for (const Defect& d : valid.diagnosis.defects) result_.statistics.notes.push_back(d.message);
+        note_defects(valid);
         try {
             fill(valid);
         } catch (const MeshError& e) {
@@ -58,7 +58,11 @@ public:
         bounds.max_radius_edge_ratio = options_.quality.max_radius_edge_ratio;
         if (options_.quality.min_dihedral_angle_deg > 0) bounds.min_dihedral_angle_deg = options_.quality.min_dihedral_angle_deg;
         const double extent = input_extent(plc_);
-        bounds.tolerance = std::max(bounds.tolerance, 4 * (valid.coplanar_tolerance) / extent);
+        // Beyond the defaults only by what the input's own rounding did: the facets' tolerance, and the bend that it makes in the mesh.
+        bounds.tolerance = std::max(bounds.tolerance, 4 * valid.coplanar_tolerance / extent);
+        if (4 * valid.coplanar_tolerance > 1e-12 * extent) bounds.flat_angle_rad = std::max(bounds.flat_angle_rad, 1.01 * largest_bend_rad(result_.mesh));
+        result_.statistics.certificate_tolerance = bounds.tolerance;
+        result_.statistics.certificate_flat_angle_rad = bounds.flat_angle_rad;
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
         report_goals(result_, options_, valid);
         result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
@@ -96,6 +100,22 @@ private:
         result_.mesh = extract_mesh(mesh);
         result_.statistics.guarded_insertions = refiner.statistics().guarded;
         result_.termination = termination(verdict);
+    }
+
+    /// Every note, but of the acute features only how many there are and which is the sharpest: surfaces have tens of thousands.
+    void note_defects(const ValidPlc& valid) {
+        std::size_t acute = 0;
+        const Defect* sharpest = nullptr;
+        for (const Defect& d : valid.diagnosis.defects) {
+            if (d.kind != DefectKind::acute_segment_angle && d.kind != DefectKind::acute_dihedral_angle) {
+                result_.statistics.notes.push_back(d.message);
+                continue;
+            }
+            ++acute;
+            if (!sharpest || d.value < sharpest->value) sharpest = &d;
+        }
+        if (acute > 1) result_.statistics.notes.push_back(fmt::format("{} input angles are below 90 degrees; the sharpest: {}", acute, sharpest->message));
+        else if (acute == 1) result_.statistics.notes.push_back(sharpest->message);
     }
 
     static Termination termination(RunGuard::Verdict verdict) {

@@ -26,7 +26,10 @@ DelaunayResult triangulate_points(std::span<const Vec3> points) {
         hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
     }
     Triangulation mesh(lo, hi);
-    if (!mesh.insert_all(points)) throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all points lie in one plane: there is no tetrahedron");
+    const std::vector<std::uint32_t> order = biased_spatial_order(points);
+    std::vector<Vec3> sorted(points.size());
+    for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = points[order[i]];
+    if (!mesh.insert_all_in_order(sorted)) throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all points lie in one plane: there is no tetrahedron");
     result.duplicates = mesh.duplicate_count();
     const TetStore& tets = mesh.tets();
     std::size_t count = 0;
@@ -36,7 +39,7 @@ DelaunayResult triangulate_points(std::span<const Vec3> points) {
         const TetId t{i};
         if (!tets.is_finite(t)) continue;
         const auto& c = tets.corners(t);
-        result.mesh.tets.push_back({c[0].value(), c[1].value(), c[2].value(), c[3].value()});
+        result.mesh.tets.push_back({order[c[0].index()], order[c[1].index()], order[c[2].index()], order[c[3].index()]});
     }
     result.mesh.tet_regions.assign(count, 1);
     result.mesh.vertices.assign(points.begin(), points.end());

@@ -223,7 +223,8 @@ bool ShapeImprover::move_vertex(VertexId v, TetId worst, unsigned samples) {
         boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
         if (!encroached_segments_.empty() || !encroached_faces_.empty()) continue;
         ranked_.push_back({p, cosine});
-        if (!boundary) limit = cosine;  // inside, nothing can spoil the best one later
+        if (cosine <= goal_cosine_) break;  // good enough
+        if (!boundary) limit = cosine;      // inside, nothing can spoil the best one later
     }
     std::stable_sort(ranked_.begin(), ranked_.end(), [](const Candidate& a, const Candidate& b) { return a.cosine < b.cosine; });
     constexpr std::size_t kTrials = 3;
