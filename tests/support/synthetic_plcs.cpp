@@ -15,6 +15,80 @@ namespace {
 
 using Cell = std::array<int, 3>;
 
+using Square = std::array<int, 2>;
+using Sheets = std::map<std::array<int, 3>, std::set<Square>>;
+
+constexpr std::array<Square, 4> kSteps{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+
+/// Takes the connected squares around one of `squares` out of it.
+std::set<Square> take_piece(std::set<Square>& squares) {
+    std::set<Square> piece;
+    std::vector<Square> stack{*squares.begin()};
+    squares.erase(squares.begin());
+    while (!stack.empty()) {
+        const Square s = stack.back();
+        stack.pop_back();
+        piece.insert(s);
+        for (const Square& d : kSteps)
+            if (const Square n{s[0] + d[0], s[1] + d[1]}; squares.erase(n) != 0) stack.push_back(n);
+    }
+    return piece;
+}
+
+/// Outline of the piece as simple loops of lattice points; loops that touch in a point are told apart there.
+std::vector<std::vector<Square>> loops_around(const std::set<Square>& piece) {
+    std::map<Square, std::vector<Square>> next;  // directed unit edges, each with the piece on its left
+    for (const Square& s : piece) {
+        const int x = s[0], y = s[1];
+        if (!piece.count({x, y - 1})) next[{x, y}].push_back({x + 1, y});
+        if (!piece.count({x + 1, y})) next[{x + 1, y}].push_back({x + 1, y + 1});
+        if (!piece.count({x, y + 1})) next[{x + 1, y + 1}].push_back({x, y + 1});
+        if (!piece.count({x - 1, y})) next[{x, y + 1}].push_back({x, y});
+    }
+    std::vector<std::vector<Square>> loops;
+    while (!next.empty()) {
+        std::vector<Square> path{next.begin()->first};
+        while (true) {
+            const auto it = next.find(path.back());
+            if (it == next.end()) break;
+            const Square to = it->second.back();
+            it->second.pop_back();
+            if (it->second.empty()) next.erase(it);
+            const auto seen = std::find(path.begin(), path.end(), to);
+            if (seen == path.end()) {
+                path.push_back(to);
+                continue;
+            }
+            loops.emplace_back(seen, path.end());
+            path.erase(seen + 1, path.end());
+        }
+    }
+    return loops;
+}
+
+bool is_corner(const std::vector<Square>& loop, std::size_t i) {
+    const Square &a = loop[(i + loop.size() - 1) % loop.size()], &b = loop[i], &c = loop[(i + 1) % loop.size()];
+    return (b[0] - a[0]) * (c[1] - b[1]) != (b[1] - a[1]) * (c[0] - b[0]);
+}
+
+/// Middles of the squares that stand for the bounded components of the piece's complement.
+std::vector<Square> holes_in(const std::set<Square>& piece) {
+    Square lo = *piece.begin(), hi = lo;
+    for (const Square& s : piece)
+        for (std::size_t k = 0; k < 2; ++k) {
+            lo[k] = std::min(lo[k], s[k] - 1);
+            hi[k] = std::max(hi[k], s[k] + 1);
+        }
+    std::set<Square> empty;
+    for (int x = lo[0]; x <= hi[0]; ++x)
+        for (int y = lo[1]; y <= hi[1]; ++y)
+            if (!piece.count({x, y})) empty.insert({x, y});
+    take_piece(empty);  // the first square is a corner of the frame: the unbounded component
+    std::vector<Square> holes;
+    while (!empty.empty()) holes.push_back(*take_piece(empty).begin());
+    return holes;
+}
+
 /// Boundary (and region interfaces) of a union of unit lattice cells; each facet is one maximal connected set of lattice squares in a plane
 /// between the same two regions, given as polygons around its outline.
 struct Polycube {
@@ -26,88 +100,105 @@ struct Polycube {
     }
 
     [[nodiscard]] Plc plc(double side) const {
+        std::vector<Piece> pieces;
+        for (int axis = 0; axis < 3; ++axis) {
+            Sheets sheets = sheets_across(axis);
+            for (auto& [key, squares] : sheets)
+                while (!squares.empty()) {
+                    const std::set<Square> piece = take_piece(squares);
+                    pieces.push_back({axis, key[0], loops_around(piece), holes_in(piece)});
+                }
+        }
+        // A corner of one facet on a straight outline of another is a vertex of both.
+        std::set<Cell> corners;
+        for (const Piece& p : pieces)
+            for (const auto& loop : p.loops)
+                for (std::size_t i = 0; i < loop.size(); ++i)
+                    if (is_corner(loop, i)) corners.insert(p.lattice_point(loop[i]));
         Plc plc;
         std::map<Cell, std::uint32_t> id;
-        auto vertex = [&](Cell c) {
-            auto [it, fresh] = id.try_emplace(c, static_cast<std::uint32_t>(plc.vertices.size()));
-            if (fresh) plc.vertices.push_back({side * c[0], side * c[1], side * c[2]});
-            return it->second;
-        };
-        for (int axis = 0; axis < 3; ++axis) {
-            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-            // squares orthogonal to `axis` with different regions on both sides, by (plane, low region, high region)
-            std::map<std::array<int, 3>, std::set<std::array<int, 2>>> sheets;
-            auto consider = [&](Cell low) {
-                Cell high = low;
-                ++high[static_cast<std::size_t>(axis)];
-                const int a = at(low), b = at(high);
-                if (a != b) sheets[{high[static_cast<std::size_t>(axis)], a, b}].insert({low[static_cast<std::size_t>(u)], low[static_cast<std::size_t>(v)]});
-            };
-            for (const auto& [c, r] : region) {
-                consider(c);
-                Cell below = c;
-                --below[static_cast<std::size_t>(axis)];
-                consider(below);
-            }
-            for (auto& [key, squares] : sheets) {
-                while (!squares.empty()) {
-                    std::set<std::array<int, 2>> piece;
-                    std::vector<std::array<int, 2>> stack{*squares.begin()};
-                    squares.erase(squares.begin());
-                    while (!stack.empty()) {
-                        const auto s = stack.back();
-                        stack.pop_back();
-                        piece.insert(s);
-                        const std::array<std::array<int, 2>, 4> around{{{s[0] + 1, s[1]}, {s[0] - 1, s[1]}, {s[0], s[1] + 1}, {s[0], s[1] - 1}}};
-                        for (const auto& n : around)
-                            if (squares.erase(n) != 0) stack.push_back(n);
-                    }
-                    plc.facets.push_back(outline(piece, axis, key[0], vertex));
+        for (const Piece& p : pieces) {
+            PlcFacet facet;
+            for (const auto& loop : p.loops) {
+                std::vector<std::uint32_t> polygon;
+                for (const Square& s : loop) {
+                    const Cell c = p.lattice_point(s);
+                    if (!corners.count(c)) continue;
+                    const auto [it, fresh] = id.try_emplace(c, static_cast<std::uint32_t>(plc.vertices.size()));
+                    if (fresh) plc.vertices.push_back({side * c[0], side * c[1], side * c[2]});
+                    polygon.push_back(it->second);
                 }
+                facet.polygons.push_back(std::move(polygon));
             }
+            for (const Square& h : p.holes) facet.holes.push_back(p.middle(h, side));
+            plc.facets.push_back(std::move(facet));
         }
         return plc;
     }
 
 private:
-    template <class V>
-    static PlcFacet outline(const std::set<std::array<int, 2>>& piece, int axis, int plane, V&& vertex) {
-        // directed unit edges around the piece, each with the piece on its left
-        std::map<std::array<int, 2>, std::array<int, 2>> next;
-        for (const auto& s : piece) {
-            const int x = s[0], y = s[1];
-            if (!piece.count({x, y - 1})) next[{x, y}] = {x + 1, y};
-            if (!piece.count({x + 1, y})) next[{x + 1, y}] = {x + 1, y + 1};
-            if (!piece.count({x, y + 1})) next[{x + 1, y + 1}] = {x, y + 1};
-            if (!piece.count({x - 1, y})) next[{x, y + 1}] = {x, y};
+    struct Piece {
+        int axis, plane;
+        std::vector<std::vector<Square>> loops;
+        std::vector<Square> holes;
+
+        [[nodiscard]] Cell lattice_point(const Square& s) const {
+            Cell c{};
+            c[static_cast<std::size_t>(axis)] = plane;
+            c[static_cast<std::size_t>((axis + 1) % 3)] = s[0];
+            c[static_cast<std::size_t>((axis + 2) % 3)] = s[1];
+            return c;
         }
-        PlcFacet facet;
-        while (!next.empty()) {
-            std::vector<std::array<int, 2>> loop;
-            auto p = next.begin()->first;
-            while (next.count(p)) {
-                loop.push_back(p);
-                const auto q = next[p];
-                next.erase(p);
-                p = q;
-            }
-            std::vector<std::uint32_t> polygon;
-            for (std::size_t i = 0; i < loop.size(); ++i) {
-                const auto& a = loop[(i + loop.size() - 1) % loop.size()];
-                const auto& b = loop[i];
-                const auto& c = loop[(i + 1) % loop.size()];
-                if ((b[0] - a[0]) * (c[1] - b[1]) == (b[1] - a[1]) * (c[0] - b[0])) continue;  // straight on
-                Cell corner{};
-                corner[static_cast<std::size_t>(axis)] = plane;
-                corner[static_cast<std::size_t>((axis + 1) % 3)] = b[0];
-                corner[static_cast<std::size_t>((axis + 2) % 3)] = b[1];
-                polygon.push_back(vertex(corner));
-            }
-            facet.polygons.push_back(std::move(polygon));
+        [[nodiscard]] Vec3 middle(const Square& s, double side) const {
+            const Cell c = lattice_point(s);
+            return side * Vec3{c[0] + (axis == 0 ? 0 : 0.5), c[1] + (axis == 1 ? 0 : 0.5), c[2] + (axis == 2 ? 0 : 0.5)};
         }
-        return facet;
+    };
+
+    /// Squares orthogonal to `axis` with different regions on both sides, by (plane, low region, high region).
+    [[nodiscard]] Sheets sheets_across(int axis) const {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        Sheets sheets;
+        auto consider = [&](Cell low) {
+            Cell high = low;
+            ++high[static_cast<std::size_t>(axis)];
+            const int a = at(low), b = at(high);
+            if (a != b) sheets[{high[static_cast<std::size_t>(axis)], a, b}].insert({low[static_cast<std::size_t>(u)], low[static_cast<std::size_t>(v)]});
+        };
+        for (const auto& [c, r] : region) {
+            consider(c);
+            Cell below = c;
+            --below[static_cast<std::size_t>(axis)];
+            consider(below);
+        }
+        return sheets;
     }
 };
+
+/// One cell of each connected component of equal label within the box [-1, n]^3.
+std::vector<Cell> component_representatives(const Polycube& cells, int n) {
+    std::set<Cell> seen;
+    std::vector<Cell> out;
+    for (int x = -1; x <= n; ++x)
+        for (int y = -1; y <= n; ++y)
+            for (int z = -1; z <= n; ++z) {
+                if (!seen.insert({x, y, z}).second) continue;
+                out.push_back({x, y, z});
+                std::vector<Cell> stack{{x, y, z}};
+                while (!stack.empty()) {
+                    const Cell c = stack.back();
+                    stack.pop_back();
+                    for (std::size_t axis = 0; axis < 3; ++axis)
+                        for (const int step : {-1, 1}) {
+                            Cell d = c;
+                            d[axis] += step;
+                            if (d[axis] < -1 || d[axis] > n || cells.at(d) != cells.at(c) || !seen.insert(d).second) continue;
+                            stack.push_back(d);
+                        }
+                }
+            }
+    return out;
+}
 
 Vec3 rotate(const std::array<double, 4>& q, const Vec3& p) {
     const Vec3 axis{q[1], q[2], q[3]};
@@ -165,6 +256,38 @@ Plc stepped_shaft() {
     sides(r2, r3);
     facet({r3});
     return plc;
+}
+
+RandomPolycube random_polycube(std::uint64_t seed) {
+    constexpr int n = 4;
+    Polycube cells;
+    std::uint64_t draws = 0;
+    const auto below = [&](std::uint64_t bound) { return static_cast<int>(mix64(seed, ++draws) % bound); };
+    const int boxes = 1 + below(6), regions = 1 + below(3);
+    for (int b = 0; b < boxes; ++b) {
+        Cell lo{}, hi{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            // The first box is large: there must be something to carve out of and to stand on.
+            lo[k] = b == 0 ? below(2) : below(n);
+            hi[k] = std::min(n, lo[k] + (b == 0 ? 2 : 1) + below(3));
+        }
+        const int label = b == 0 ? 1 : below(static_cast<std::uint64_t>(regions) + 1);
+        for (int x = lo[0]; x < hi[0]; ++x)
+            for (int y = lo[1]; y < hi[1]; ++y)
+                for (int z = lo[2]; z < hi[2]; ++z) {
+                    if (label != 0) cells.region[{x, y, z}] = label;
+                    else cells.region.erase({x, y, z});
+                }
+    }
+    if (cells.region.empty()) cells.region[{0, 0, 0}] = 1;
+    RandomPolycube out{cells.plc(1), {}};
+    for (const auto& [c, label] : cells.region) ++out.cells_of_region[label];
+    for (const Cell& c : component_representatives(cells, n)) {
+        const Vec3 middle{c[0] + 0.5, c[1] + 0.5, c[2] + 0.5};
+        if (cells.at(c) != 0) out.plc.region_seeds.push_back({middle, cells.at(c), 0});
+        else if (c != Cell{-1, -1, -1}) out.plc.hole_seeds.push_back(middle);
+    }
+    return out;
 }
 
 std::vector<NamedPlc> all_synthetic_plcs() {

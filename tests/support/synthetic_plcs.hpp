@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,14 @@ Plc l_block(double side = 1);            ///< three unit cells in an L
 Plc cube_with_cavity();                  ///< 3 x 3 x 3 cells without the middle one (a hole seed in it)
 Plc cube_with_internal_facet();          ///< two cells side by side, two regions
 Plc stepped_shaft();                     ///< two octagonal prisms of different width on one axis (dihedral angles 135 and 90 degrees)
+
+/// One to six random boxes of a 4 x 4 x 4 lattice, added or carved out, with one to three regions: cavities, handles, edges and vertices that
+/// touch, facets with holes. All angles are 90 degrees or more.
+struct RandomPolycube {
+    Plc plc;
+    std::map<std::int32_t, int> cells_of_region;  ///< unit cells by region: the volumes
+};
+RandomPolycube random_polycube(std::uint64_t seed);
 
 struct NamedPlc { std::string name; Plc plc; };
 std::vector<NamedPlc> all_synthetic_plcs();

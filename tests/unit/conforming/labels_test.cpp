@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+// Insertions, removals and their inverses in a labelled mesh.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "conforming/place_point.hpp"
+#include "core/rng.hpp"
+#include "support/staged_mesh.hpp"
+#include "support/synthetic_plcs.hpp"
+
+namespace wellmesh::testing {
+namespace {
+
+/// Everything that the mesh says, without ids of tetrahedra.
+struct State {
+    std::set<std::pair<std::array<VertexId, 4>, CellId>> tets;
+    std::set<std::tuple<std::array<VertexId, 4>, std::array<VertexId, 3>, FacetId>> faces;
+    std::set<std::tuple<std::array<VertexId, 4>, std::array<VertexId, 2>, SegmentId>> edges;
+    std::size_t vertices = 0;
+    friend bool operator==(const State&, const State&) = default;
+};
+
+template <std::size_t n>
+std::array<VertexId, n> sorted(std::array<VertexId, n> c) {
+    std::sort(c.begin(), c.end());
+    return c;
+}
+
+State state_of(const ConformingMesh& mesh) {
+    State s;
+    s.vertices = mesh.vertex_count();
+    const TetStore& tets = mesh.tets();
+    for (std::size_t i = 0; i < tets.slots(); ++i) {
+        const TetId t{i};
+        if (!tets.is_live(t)) continue;
+        const auto& c = tets.corners(t);
+        s.tets.insert({sorted(c), mesh.cell(t)});
+        for (unsigned f = 0; f < 4; ++f)
+            if (const FacetId label = mesh.facet_at(TetFace{t, f}); label.valid()) s.faces.insert({sorted(c), sorted(tets.face_corners(TetFace{t, f})), label});
+        for (unsigned e = 0; e < 6; ++e)
+            if (const SegmentId label = mesh.segment_at(t, e); label.valid())
+                s.edges.insert({sorted(c), sorted(std::array{c[kEdgeCorners[e][0]], c[kEdgeCorners[e][1]]}), label});
+    }
+    return s;
+}
+
+struct Spot {
+    Vec3 point{};
+    TetId near{};
+    Placement where{};
+};
+
+/// Random places for new vertices and random vertices, by the kind of what carries them.
+class Workshop {
+public:
+    Workshop(StagedMesh& staged, std::uint64_t seed) : staged_(staged), mesh_(staged.mesh), seed_(seed) {}
+
+    std::size_t below(std::size_t n) { return mix64(seed_, ++draws_) % n; }
+
+    /// @return false if the draw is of no use.
+    bool propose(CarrierKind kind, Spot& spot) {
+        const TetStore& tets = mesh_.tets();
+        for (std::size_t start = below(tets.slots()), i = 0; i < tets.slots(); ++i) {
+            const TetId t{(start + i) % tets.slots()};
+            if (!tets.is_finite(t) || !mesh_.in_domain(t)) continue;
+            const auto& c = tets.corners(t);
+            const double u = 0.2 + 0.6 * random(), v = random(), w = random();
+            if (kind == CarrierKind::region) {
+                const double sum = 1 + u + v + w;
+                spot.point = mesh_.point(c[0]) + (u / sum) * (mesh_.point(c[1]) - mesh_.point(c[0])) + (v / sum) * (mesh_.point(c[2]) - mesh_.point(c[0])) +
+                             (w / sum) * (mesh_.point(c[3]) - mesh_.point(c[0]));
+                spot.where = Placement::in_cell(mesh_.cell(t));
+                spot.near = t;
+                return true;
+            }
+            if (!mesh_.has_labels(t)) continue;
+            const TetLabels& l = mesh_.labels(t);
+            if (kind == CarrierKind::facet) {
+                for (unsigned f = 0; f < 4; ++f) {
+                    if (!l.facets[f].valid()) continue;
+                    const auto fc = tets.face_corners(TetFace{t, f});
+                    const double sum = 1 + u + v;
+                    spot.point = project_to_facet(staged_.plc.facets[l.facets[f].index()], mesh_.point(fc[0]) + (u / sum) * (mesh_.point(fc[1]) - mesh_.point(fc[0])) +
+                                                                                               (v / sum) * (mesh_.point(fc[2]) - mesh_.point(fc[0])));
+                    spot.where = Placement::on_facet(l.facets[f]);
+                    spot.near = t;
+                    return true;
+                }
+                continue;
+            }
+            for (unsigned e = 0; e < 6; ++e) {
+                if (!l.segments[e].valid()) continue;
+                const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
+                spot.point = project_to_segment(staged_.plc, l.segments[e], mesh_.point(a) + u * (mesh_.point(b) - mesh_.point(a)));
+                spot.where = Placement::on_segment({a, b, l.segments[e]});
+                spot.near = t;
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// A legal place: its insertion breaks nothing that the point does not lie on.
+    bool find(CarrierKind kind, Spot& spot, Cavity& cavity) {
+        for (int attempt = 0; attempt < 20; ++attempt) {
+            if (!propose(kind, spot) || !mesh_.triangulation().find_conflict_cavity(spot.point, spot.near, cavity)) continue;
+            if (kind == CarrierKind::region && mesh_.cell(cavity.tets[0]).value() != spot.where.carrier_id) continue;
+            if (!mesh_.holds_carrier(cavity, spot.where) || mesh_.would_break(cavity, spot.where)) continue;
+            staged_.boundary.find_encroached(cavity, spot.where, segments_, faces_);
+            if (segments_.empty() && faces_.empty()) return true;
+        }
+        return false;
+    }
+
+    VertexId insert(const Spot& spot, const Cavity& cavity) {
+        return mesh_.insert(cavity, spot.where, {spot.where.carrier, InsertionReason::radius_edge, spot.where.carrier_id, VertexId{}, 0});
+    }
+
+    VertexId steiner_vertex(CarrierKind kind) {
+        for (std::size_t start = below(mesh_.vertex_slots()), i = 0; i < mesh_.vertex_slots(); ++i) {
+            const VertexId v{(start + i) % mesh_.vertex_slots()};
+            if (mesh_.info(v).carrier == kind && mesh_.triangulation().is_inserted(v)) return v;
+        }
+        return {};
+    }
+
+    /// Where v stands, with the ends of the subsegments at it. @return false if it is the end of a segment's label.
+    bool placement_of(VertexId v, const std::vector<TetId>& star, Placement& where) const {
+        where = {mesh_.info(v).carrier, mesh_.info(v).carrier_id, {}, {}};
+        if (where.carrier != CarrierKind::segment) return true;
+        std::set<VertexId> ends;
+        for (const TetId t : star)
+            for (unsigned e = 0; e < 6; ++e) {
+                const VertexId a = mesh_.tets().corner(t, kEdgeCorners[e][0]), b = mesh_.tets().corner(t, kEdgeCorners[e][1]);
+                if ((a == v || b == v) && mesh_.segment_at(t, e).value() == where.carrier_id) ends.insert(a == v ? b : a);
+            }
+        if (ends.size() != 2) return false;
+        where.a = *ends.begin();
+        where.b = *ends.rbegin();
+        return true;
+    }
+
+private:
+    double random() { return unit_double(mix64(seed_, ++draws_)); }
+
+    StagedMesh& staged_;
+    ConformingMesh& mesh_;
+    std::uint64_t seed_, draws_ = 0;
+    std::vector<Subsegment> segments_;
+    std::vector<Subface> faces_;
+};
+
+bool lies_between_ends(const ConformingMesh& mesh, const Placement& where, const Vec3& p) {
+    if (where.carrier != CarrierKind::segment) return true;
+    const Vec3 &a = mesh.point(where.a), &b = mesh.point(where.b);
+    return dot(p - a, b - a) > 0 && dot(p - b, a - b) > 0;
+}
+
+constexpr std::array kKinds{CarrierKind::segment, CarrierKind::facet, CarrierKind::region};
+
+/// Fine enough that many places encroach nothing.
+class Labels : public ::testing::TestWithParam<std::tuple<std::size_t, std::uint64_t, double>> {
+protected:
+    void SetUp() override {
+        const auto [domain, rotation, shift] = GetParam();
+        const Plc plc = all_synthetic_plcs()[domain].plc;
+        MeshOptions options;
+        options.size.edge_length = 0.15 * diagonal(plc);
+        staged_.emplace(transformed(plc, rotation, shift, 1), options);
+        staged_->conform();
+        refiner_.emplace(staged_->mesh, staged_->boundary, staged_->guard, options);
+        ASSERT_EQ(refiner_->refine(), RunGuard::Verdict::go_on);
+        ASSERT_EQ(staged_->problem(true), "");
+    }
+
+    std::optional<StagedMesh> staged_;
+    std::optional<Refiner> refiner_;
+};
+
+TEST_P(Labels, SurviveInsertionsAndRemovals) {
+    StagedMesh& staged = *staged_;
+    Workshop workshop(staged, 17);
+    Spot spot;
+    Cavity cavity;
+    Hole hole;
+    std::array<std::size_t, 3> inserted{}, removed{}, refused{};
+    for (std::size_t step = 0; step < 400; ++step) {
+        const std::size_t k = workshop.below(3);
+        // The mesh grows first and shrinks then.
+        if (workshop.below(400) >= step) {
+            if (!workshop.find(kKinds[k], spot, cavity)) continue;
+            const VertexId v = workshop.insert(spot, cavity);
+            ASSERT_EQ(staged.mesh.point(v), spot.point);
+            ++inserted[k];
+        } else {
+            const VertexId v = workshop.steiner_vertex(kKinds[k]);
+            if (!v.valid() || !staged.mesh.triangulation().find_hole(v, hole)) continue;
+            const std::size_t before = staged.mesh.vertex_count();
+            const bool gone = staged.mesh.remove(hole);
+            ASSERT_EQ(staged.mesh.triangulation().is_inserted(v), !gone);
+            ASSERT_EQ(staged.mesh.vertex_count() + gone, before);
+            ++(gone ? removed : refused)[k];
+        }
+        ASSERT_FALSE(staged.mesh.has_broken());
+        if (step % 10 == 0) { ASSERT_EQ(staged.problem(false), "") << "step " << step; }
+    }
+    EXPECT_EQ(staged.problem(false), "");
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_GT(inserted[k], 5U) << k;
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_GT(removed[k], 5U) << k << ", refused " << refused[k];
+    EXPECT_GT(removed[2], refused[2]);
+}
+
+TEST_P(Labels, UndoneInsertionsLeaveNoTrace) {
+    StagedMesh& staged = *staged_;
+    Workshop workshop(staged, 23);
+    Spot spot;
+    Cavity cavity;
+    ConformingMesh::Snapshot snapshot;
+    std::array<std::size_t, 3> undone{};
+    for (std::size_t step = 0; step < 90; ++step) {
+        const std::size_t k = step % 3;
+        if (!workshop.find(kKinds[k], spot, cavity)) continue;
+        if (step % 2 != 0) {  // every second one stays: undo in growing meshes
+            workshop.insert(spot, cavity);
+            continue;
+        }
+        const State before = state_of(staged.mesh);
+        staged.mesh.save(cavity.tets, snapshot);
+        const VertexId v = workshop.insert(spot, cavity);
+        ASSERT_FALSE(state_of(staged.mesh) == before);
+        staged.mesh.undo_insertion(v, spot.where, snapshot);
+        ASSERT_TRUE(state_of(staged.mesh) == before) << "step " << step;
+        ++undone[k];
+    }
+    EXPECT_EQ(staged.problem(false), "");
+    for (const std::size_t n : undone) EXPECT_GT(n, 2U);
+}
+
+TEST_P(Labels, UndoneRemovalsLeaveNoTrace) {
+    StagedMesh& staged = *staged_;
+    Workshop workshop(staged, 29);
+    Spot spot;
+    Cavity cavity;
+    Hole hole;
+    ConformingMesh::Snapshot snapshot;
+    for (std::size_t i = 0; i < 60; ++i)
+        if (workshop.find(kKinds[i % 3], spot, cavity)) workshop.insert(spot, cavity);
+    std::array<std::size_t, 3> undone{};
+    for (std::size_t step = 0; step < 90; ++step) {
+        const std::size_t k = step % 3;
+        const VertexId v = workshop.steiner_vertex(kKinds[k]);
+        if (!v.valid() || !staged.mesh.triangulation().find_hole(v, hole)) continue;
+        Placement where;
+        ASSERT_TRUE(workshop.placement_of(v, hole.star, where));
+        const State before = state_of(staged.mesh);
+        staged.mesh.save(hole.star, snapshot);
+        if (!staged.mesh.remove(hole)) {
+            ASSERT_TRUE(state_of(staged.mesh) == before) << "a refused removal changed something";
+            continue;
+        }
+        ASSERT_EQ(staged.problem(false), "");
+        staged.mesh.undo_removal(v, where, snapshot);
+        ASSERT_TRUE(state_of(staged.mesh) == before) << "step " << step;
+        ++undone[k];
+    }
+    EXPECT_EQ(staged.problem(false), "");
+    for (const std::size_t n : undone) EXPECT_GT(n, 2U);
+}
+
+TEST_P(Labels, ReinsertionElsewhereOnTheCarrierKeepsThem) {
+    StagedMesh& staged = *staged_;
+    Workshop workshop(staged, 31);
+    Spot spot;
+    Cavity cavity;
+    Hole hole;
+    for (std::size_t i = 0; i < 60; ++i)
+        if (workshop.find(kKinds[i % 3], spot, cavity)) workshop.insert(spot, cavity);
+    ConformingMesh& mesh = staged.mesh;
+    ConformingMesh::Snapshot snapshot;
+    std::size_t moved = 0;
+    for (std::size_t step = 0; step < 120; ++step) {
+        const VertexId v = workshop.steiner_vertex(kKinds[step % 3]);
+        if (!v.valid() || !mesh.triangulation().find_hole(v, hole)) continue;
+        Placement where;
+        ASSERT_TRUE(workshop.placement_of(v, hole.star, where));
+        mesh.save(hole.star, snapshot);
+        if (!mesh.remove(hole)) continue;
+        const Vec3 home = mesh.point(v), wanted = home + 0.05 * Vec3{1, -0.5, 0.25};
+        const Vec3 p = where.carrier == CarrierKind::segment  ? project_to_segment(staged.plc, SegmentId{where.carrier_id}, wanted)
+                       : where.carrier == CarrierKind::facet ? project_to_facet(staged.plc.facets[where.carrier_id], wanted)
+                                                             : wanted;
+        const bool legal = mesh.triangulation().find_conflict_cavity(p, mesh.triangulation().new_tets()[0], cavity) &&
+                           (where.carrier != CarrierKind::region || mesh.cell(cavity.tets[0]).value() == where.carrier_id) && mesh.holds_carrier(cavity, where) &&
+                           !mesh.would_break(cavity, where) && lies_between_ends(mesh, where, p);
+        if (legal) {
+            mesh.reinsert(v, cavity, where);
+            ++moved;
+        } else {
+            mesh.undo_removal(v, where, snapshot);
+        }
+        ASSERT_EQ(staged.problem(false), "") << "step " << step;
+    }
+    EXPECT_GT(moved, 10U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Domains, Labels, ::testing::Combine(::testing::Range<std::size_t>(0, 5), ::testing::Values(0U, 4U), ::testing::Values(0.0, 1e3)));
+
+}  // namespace
+}  // namespace wellmesh::testing
