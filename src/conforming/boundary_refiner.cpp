@@ -15,7 +15,7 @@ namespace {
 
 /// Splits avoid the exact centre: on symmetric input midpoints make cospherical structures that are split for ever.
 constexpr double kJitter = 0.05;
-/// Radius of a picking region relative to the circumradius (half the length of a subsegment) [LiTeng01, 2.3; docs/theory].
+/// Radius of a picking region relative to the circumradius (half the length of a subsegment) [LiTeng01, 2.3].
 constexpr double kPickingRadius = 0.3;
 
 }  // namespace

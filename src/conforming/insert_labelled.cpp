@@ -135,6 +135,11 @@ void ConformingMesh::replace_subfaces(const Cavity& cavity, const Placement& whe
 }
 
 bool ConformingMesh::holds_carrier(const Cavity& cavity, const Placement& where) const {
+    if (where.carrier == CarrierKind::segment) {
+        const Vec3 d = point(where.b) - point(where.a);
+        const double along = dot(cavity.point - point(where.a), d);
+        return along > 0 && along < squared_norm(d);
+    }
     if (where.carrier != CarrierKind::facet) return true;
     const FacetId facet{where.carrier_id};
     constexpr double kEdgeTolerance = -1e-6;  // relative: a point on an edge of two subfaces lies in both

@@ -2,6 +2,7 @@
 // The pipeline: one call a stage, nothing else (src/README.md).
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,10 @@
 
 namespace wellmesh {
 namespace {
+
+/// Refinement looks for points without slivers below this angle, among so many: more cost more than the moves that they save (docs/decisions/0010).
+constexpr double kPickingAngleDeg = 20;
+constexpr unsigned kPickingCandidates = 12;
 
 class Generator {
 public:
@@ -64,6 +69,7 @@ public:
         result_.statistics.certificate_tolerance = bounds.tolerance;
         result_.statistics.certificate_flat_angle_rad = bounds.flat_angle_rad;
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
+        fail_if_refuted();
         report_goals(result_, options_, valid);
         result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
         return std::move(result_);
@@ -84,6 +90,8 @@ private:
             count();
         });
         Refiner refiner(mesh, boundary, guard_, options_);
+        if (const double theta = options_.quality.min_dihedral_angle_deg; theta > 0)
+            refiner.set_sliver_cosine(std::cos(std::min(theta, kPickingAngleDeg) * (std::numbers::pi / 180)), kPickingCandidates);
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
             verdict = refiner.refine();
@@ -100,6 +108,20 @@ private:
         result_.mesh = extract_mesh(mesh);
         result_.statistics.guarded_insertions = refiner.statistics().guarded;
         result_.termination = termination(verdict);
+    }
+
+    /// Delaunay, conforming and Gabriel hold or the run fails; shape and size are asked and achieved instead.
+    void fail_if_refuted() const {
+        for (const Claim& claim : result_.certificate.claims) {
+            const bool goal = claim.name == "radius_edge" || claim.name == "dihedral" || claim.name == "aspect_ratio" || claim.name == "sigma" || claim.name == "max_volume";
+            if (goal || claim.state != Claim::State::refuted) continue;
+            std::vector<ElementRef> offenders;
+            if (claim.witness) offenders.push_back(*claim.witness);
+            throw MeshError(ErrorCode::internal_invariant, Stage::certify,
+                            fmt::format("the finished mesh fails its own certificate, claim {}: {} of {}: {}; please report this input", claim.name, claim.violations,
+                                        claim.checked, claim.detail),
+                            offenders);
+        }
     }
 
     /// Every note, but of the acute features only how many there are and which is the sharpest: surfaces have tens of thousands.

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -51,8 +50,8 @@ public:
     }
 
 private:
-    static constexpr int kBias = 40, kLevels = 160;
-    std::array<std::vector<Entry>, kLevels> buckets_;
+    static constexpr int kBias = 1000, kLevels = 2001;  // nearly all exponents of doubles: models come in metres and in micrometres
+    std::vector<std::vector<Entry>> buckets_ = std::vector<std::vector<Entry>>(kLevels);
     int top_ = 0;
     std::size_t size_ = 0;
 };

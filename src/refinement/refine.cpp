@@ -12,16 +12,20 @@
 namespace wellmesh {
 namespace {
 
-constexpr double kPickingRadius = 0.3;  // delta of the paper; docs/decisions
+constexpr double kPickingRadius = 0.3;  // delta of the paper; docs/decisions/0010
 /// Candidates matter only where the tetrahedra that they make may stay: within this factor of the size bound.
-constexpr double kJudgeWithin = 2.0;
+constexpr double kJudgeWithin = 1.5;
 /// Beyond this R/L the circumcentre in doubles is noise: the tetrahedron is split at a labelled face or at its longest edge.
 constexpr double kFlatRadiusEdge = 1e6;
+constexpr double kFlatVolume = 1e-10;  // of the cubed longest edge: dihedral angles of about 1e-8 degrees
 
 }  // namespace
 
 Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options)
     : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(cell_sizes(mesh.plc(), options.size)), max_radius_edge_(options.quality.max_radius_edge_ratio) {
+    double largest = 0;
+    for (const Vec3& p : mesh.plc().vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    rounding_ = 64 * largest * 0x1p-53;  // heights of a few ulp
     boundary_.on_insert = [this](VertexId) { enqueue(mesh_.triangulation().new_tets()); };
     boundary_.on_repair = [this] { enqueue_all(); };
     boundary_.judge = [this](const Cavity& cavity, const Placement& where) { return !judging_ || star_is_good(cavity, where); };
@@ -37,6 +41,13 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
     const double squared_radius = squared_norm(n) / (4 * six_volume * six_volume);
     const double squared_edge = std::min({lu, lv, lw, squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
     squared_badness = squared_radius;
+    // No thicker than what rounding does to points of one facet: its circumsphere is noise, however ordinary it looks.
+    const double squared_longest = std::max({lu, lv, lw, squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
+    const double longest = std::sqrt(squared_longest);
+    if (!(six_volume > std::max(kFlatVolume * longest, rounding_) * squared_longest)) {
+        squared_badness = std::numeric_limits<double>::infinity();
+        return Fault::flat;
+    }
     if (!(squared_radius < kFlatRadiusEdge * kFlatRadiusEdge * squared_edge)) {
         squared_badness = std::numeric_limits<double>::infinity();
         return Fault::flat;

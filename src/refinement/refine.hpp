@@ -59,6 +59,7 @@ private:
     RunGuard& guard_;
     std::vector<CellSize> sizes_;
     double max_radius_edge_, shortest_allowed_ = 0;
+    double rounding_ = 0;  // input units: a tetrahedron this thin is flat
     double sliver_cosine_ = 2;
     unsigned candidates_ = 1;
     bool judging_ = false;

@@ -14,7 +14,7 @@ namespace wellmesh {
 /// 10 % (measured from 1k to 200k tetrahedra; tests/unit/refinement/sizing_test.cpp).
 inline constexpr double kCircumradiusPerEdgeLength = 0.74;
 
-/// Moving vertices may let circumradii exceed the bound by this factor (docs/decisions).
+/// Moving vertices may let circumradii exceed the bound by this factor (docs/decisions/0010).
 inline constexpr double kSizeTolerance = 1.2;
 
 /// Bounds of one cell; infinite where nothing is asked.
