@@ -13,12 +13,11 @@
 namespace wellmesh::certifying {
 namespace {
 
-/// A face in the bucket of its lowest vertex.
+/// A face in the bucket of its lowest vertex. One word for both other vertices: compared at once, they sort faster.
 struct FaceRecord {
-    std::uint32_t middle, highest, tet;
-    friend bool operator<(const FaceRecord& a, const FaceRecord& b) {
-        return a.middle != b.middle ? a.middle < b.middle : a.highest != b.highest ? a.highest < b.highest : a.tet < b.tet;
-    }
+    std::uint64_t others;  // the middle vertex above the highest one
+    std::uint32_t tet;
+    friend bool operator<(const FaceRecord& a, const FaceRecord& b) { return a.others != b.others ? a.others < b.others : a.tet < b.tet; }
 };
 
 Triangle sorted(Triangle t) {
@@ -36,7 +35,7 @@ public:
         for_faces(mesh, [&](const Triangle& k, std::uint32_t) { ++first_[std::size_t{k[0]} + 2]; });
         for (std::size_t v = 2; v < first_.size(); ++v) first_[v] += first_[v - 1];
         records_.resize(first_.back());
-        for_faces(mesh, [&](const Triangle& k, std::uint32_t t) { records_[first_[std::size_t{k[0]} + 1]++] = {k[1], k[2], t}; });
+        for_faces(mesh, [&](const Triangle& k, std::uint32_t t) { records_[first_[std::size_t{k[0]} + 1]++] = {std::uint64_t{k[1]} << 32 | k[2], t}; });
     }
 
     /// Calls visit(face, tets) for every distinct face in ascending order, `tets` ascending.
@@ -46,17 +45,28 @@ public:
         for (std::size_t v = 0; v + 2 < first_.size(); ++v) {
             FaceRecord* r = records_.data() + first_[v];
             FaceRecord* const end = records_.data() + first_[v + 1];
-            std::sort(r, end);
+            sort_bucket(r, end);
             while (r != end) {
-                const Triangle face{static_cast<std::uint32_t>(v), r->middle, r->highest};
+                const std::uint64_t others = r->others;
+                const Triangle face{static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(others >> 32), static_cast<std::uint32_t>(others)};
                 tets.clear();
-                for (; r != end && r->middle == face[1] && r->highest == face[2]; ++r) tets.push_back(r->tet);
+                for (; r != end && r->others == others; ++r) tets.push_back(r->tet);
                 visit(face, tets);
             }
         }
     }
 
 private:
+    /// Records come by ascending tetrahedron, so a stable sort by vertices is enough; buckets of a good mesh are short.
+    static void sort_bucket(FaceRecord* begin, FaceRecord* end) {
+        if (end - begin > 48) return std::sort(begin, end);
+        for (FaceRecord* i = begin; i < end; ++i) {
+            const FaceRecord record = *i;
+            FaceRecord* place = i;
+            for (; place > begin && record.others < place[-1].others; --place) *place = place[-1];
+            *place = record;
+        }
+    }
     template <class Visit>
     static void for_faces(const SuspectMesh& mesh, Visit&& visit) {
         for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
@@ -120,9 +130,16 @@ public:
     }
 
 private:
-    /// Side of the ascending face on which the tetrahedron's apex lies.
+    /// Side of the ascending face on which the tetrahedron's apex lies. Of a positive tetrahedron it follows from the order of its corners:
+    /// orient3d changes sign with each transposition, of which the apex takes 3 - i from place i to the end, the others one an inversion.
     Sign side(const Triangle& face, std::uint32_t tet) const {
-        return mesh_.predicates().orient3d(mesh_.point(face[0]), mesh_.point(face[1]), mesh_.point(face[2]), mesh_.point(apex(mesh_.mesh().tets[tet], face)));
+        const auto& v = mesh_.mesh().tets[tet];
+        const std::uint32_t top = apex(v, face);
+        if (!mesh_.positive(tet)) return mesh_.predicates().orient3d(mesh_.point(face[0]), mesh_.point(face[1]), mesh_.point(face[2]), mesh_.point(top));
+        const std::size_t i = v[0] == top ? 0 : v[1] == top ? 1 : v[2] == top ? 2 : 3;
+        const std::uint32_t a = v[i == 0 ? 1 : 0], b = v[i <= 1 ? 2 : 1], c = v[i <= 2 ? 3 : 2];
+        const std::size_t transpositions = (3 - i) + (a > b) + (a > c) + (b > c);
+        return transpositions % 2 == 0 ? Sign::positive : Sign::negative;
     }
 
     /// A tetrahedron is looked at only at the face opposite its highest corner, so that each repetition counts once.

@@ -18,7 +18,7 @@ struct FaceSurvey {
     Claim face_sharing, opposite_sides, distinct_tets, listed_subfaces_exist;
 };
 
-/// O(n log n) time; about 50 bytes a tetrahedron of scratch memory, freed on return.
+/// O(n log n) time; about 70 bytes a tetrahedron of scratch memory, freed on return.
 [[nodiscard]] FaceSurvey survey_faces(const SuspectMesh& mesh);
 
 /// Edges where constraint triangles meet other than as two that are flat together, and all listed ones; ascending, each once.

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "certify/box_cover.hpp"
 #include "certify/triangle_tree.hpp"
 #include "core/vec3_math.hpp"
 
@@ -32,6 +34,52 @@ bool beyond_a_face(const SuspectMesh& mesh, const Tet& tet, const Tet& other) {
 }
 
 std::uint64_t number(std::size_t index) { return std::uint64_t{index} + 1; }
+
+Box3 box_of(const SuspectMesh& mesh, const Tet& tet) {
+    const std::array<Vec3, 4> p{mesh.point(tet[0]), mesh.point(tet[1]), mesh.point(tet[2]), mesh.point(tet[3])};
+    return Box3::of(p.data(), 4);
+}
+
+std::uint32_t tet_of_hull_face(const ConstraintTriangle& t) { return t.tets[t.tets[0] == kNone ? 1 : 0]; }
+
+/// Does the positive tetrahedron meet the plane of the hull face in more than a point or an edge, with points on its inner side?
+bool spans_plane_inside(const SuspectMesh& mesh, const ConstraintTriangle& face, const Tet& tet) {
+    const Sign inner_sign = face.tets[0] == kNone ? Sign::negative : Sign::positive;
+    int inner = 0, outer = 0;
+    for (const std::uint32_t v : tet) {
+        if (v == face.v[0] || v == face.v[1] || v == face.v[2]) continue;
+        const Sign s = mesh.predicates().orient3d(mesh.point(face.v[0]), mesh.point(face.v[1]), mesh.point(face.v[2]), mesh.point(v));
+        if (s != Sign::zero) ++(s == inner_sign ? inner : outer);
+    }
+    return inner > 0 && (outer > 0 || inner == 1);
+}
+
+/// No tetrahedron overlaps the one at a hull face next to that face: proves `disjoint_tets` if the premises of (1) hold.
+bool clear_inside_hull(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles) {
+    std::vector<std::uint32_t> hull;
+    std::vector<Box3> boxes;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (!triangles[i].on_hull) continue;
+        const Triangle& v = triangles[i].v;
+        const Corners corners{mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2])};
+        hull.push_back(static_cast<std::uint32_t>(i));
+        boxes.push_back(Box3::of(corners.data(), 3));
+    }
+    const BoxCover cover(boxes);
+    const BoxTree tree(std::move(boxes));
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const Tet& tet = mesh.mesh().tets[t];
+        const Box3 box = box_of(mesh, tet);
+        if (!cover.may_meet(box)) continue;
+        const bool found = tree.any_meeting(box, [&](std::uint32_t i) {
+            const ConstraintTriangle& face = triangles[hull[i]];
+            const std::uint32_t owner = tet_of_hull_face(face);
+            return owner != t && spans_plane_inside(mesh, face, tet) && overlap(mesh, t, owner);
+        });
+        if (found) return false;
+    }
+    return true;
+}
 
 }  // namespace
 
@@ -67,16 +115,13 @@ bool overlap(const SuspectMesh& mesh, std::size_t tet, std::size_t other) {
 
 Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order) {
     ClaimBuilder claim("disjoint_tets", "No two tetrahedra overlap.");
+    claim.checked(mesh.tet_count());
+    if (faces_in_order && clear_inside_hull(mesh, triangles)) return claim.decided();
     std::vector<std::uint32_t> at_hull;
     for (const ConstraintTriangle& t : triangles)
-        if (t.on_hull) at_hull.push_back(t.tets[t.tets[0] == kNone ? 1 : 0]);
+        if (t.on_hull) at_hull.push_back(tet_of_hull_face(t));
     std::sort(at_hull.begin(), at_hull.end());
     at_hull.erase(std::unique(at_hull.begin(), at_hull.end()), at_hull.end());
-    const auto box_of = [&](std::size_t t) {
-        std::array<Vec3, 4> p;
-        for (std::size_t i = 0; i < 4; ++i) p[i] = mesh.point(mesh.mesh().tets[t][i]);
-        return Box3::of(p.data(), 4);
-    };
     const auto flat = [&](std::size_t t) {
         const Tet& v = mesh.mesh().tets[t];
         return !mesh.positive(t) && mesh.predicates().orient3d(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) == Sign::zero;
@@ -84,21 +129,18 @@ Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriang
     std::erase_if(at_hull, flat);
     std::vector<Box3> boxes;
     boxes.reserve(at_hull.size());
-    for (const std::uint32_t t : at_hull) boxes.push_back(box_of(t));
+    for (const std::uint32_t t : at_hull) boxes.push_back(box_of(mesh, mesh.mesh().tets[t]));
     const BoxTree tree(std::move(boxes));
-    std::uint64_t pairs = 0;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         std::uint32_t partner = kNone;
         // Each pair of two tetrahedra at the hull is met from both sides: both overlap.
-        const bool found = tree.any_meeting(box_of(t), [&](std::uint32_t i) {
+        const bool found = tree.any_meeting(box_of(mesh, mesh.mesh().tets[t]), [&](std::uint32_t i) {
             if (at_hull[i] == t) return false;
-            ++pairs;
             partner = at_hull[i];
             return !flat(t) && overlap(mesh, t, partner);
         });
         if (found) claim.violated(EntityKind::tetrahedron, number(t), mesh.tet_centroid(t), [&] { return fmt::format("overlaps tetrahedron {}", partner + 1); });
     }
-    claim.checked(mesh.tet_count());
     if (claim.violations() > 0) claim.note("only overlaps with tetrahedra at the hull are counted");
     return faces_in_order ? claim.decided() : claim.undecided("without sound faces only overlaps at the hull can be found");
 }

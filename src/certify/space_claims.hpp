@@ -8,7 +8,12 @@
 //     contain a generic point x changes only across hull faces, and is 0 far away. Take a generic path from a point with w >= 2 to
 //     infinity, and the last hull-face crossing before which w >= 2 and after which w <= 1. On the near side two tetrahedra A, B share
 //     points next to the crossing; not both go on beyond it, so one of them has a hull face there, and it overlaps the other.
-//     Hence `disjoint_tets` compares only tetrahedra with a hull face with all others.
+//     More precisely, let A have the hull face F at the crossing x. A generic path avoids the edges of all tetrahedra and the lines in
+//     which two planes of faces meet, so x is inside B or inside a face of B that lies in F's plane. So B meets the box of F, and either has
+//     corners strictly on both sides of F's plane, or three corners on it and the fourth on the inner side (on the outer, A and B would
+//     be apart).
+//     Hence `disjoint_tets` is proven if, for no hull face, a tetrahedron of this kind overlaps the one at the face. If one does, or if the
+//     premises fail, tetrahedra with a hull face are compared with all others, to count.
 //
 // (2) If moreover no two overlap, every interior face is locally Delaunay (neither apex strictly inside the other's circumsphere), every
 //     vertex is used, and no vertex is strictly inside the equatorial sphere of a hull face, then no vertex is strictly inside any

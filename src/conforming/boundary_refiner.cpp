@@ -18,6 +18,9 @@ constexpr double kJitter = 0.05;
 /// Radius of a picking region relative to the circumradius (half the length of a subsegment) [LiTeng01, 2.3].
 constexpr double kPickingRadius = 0.3;
 
+/// Pieces of a segment never get shorter than this part of it unless splits chase each other about an acute angle.
+constexpr double kShortestPiece = 1e-9;
+
 }  // namespace
 
 // ------------------------------------------------------------------------------------------------ queues
@@ -114,6 +117,11 @@ void BoundaryRefiner::inserted(VertexId v) {
 
 // ------------------------------------------------------------------------------------------------ splits
 
+double BoundaryRefiner::segment_length(SegmentId s) const {
+    const auto& ends = mesh_.plc().segments[s.index()].ends;
+    return distance(mesh_.point(ends[0]), mesh_.point(ends[1]));
+}
+
 BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const SplitRequest& request) {
     const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b);
     const std::uint64_t key = mix64(seed_, mix64(std::min(s.a, s.b).value(), std::max(s.a, s.b).value()));
@@ -133,10 +141,10 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const 
                 chosen = k;
                 break;
             }
-    if (!found(chosen))
+    if (distance(a, b) < kShortestPiece * segment_length(s.segment) || !found(chosen))
         throw MeshError(ErrorCode::budget_exhausted, guard_.stage(),
-                        fmt::format("segment {} can't be split any further: its pieces are as short as the rounding of its coordinates, near ({}, {}, {})",
-                                    s.segment.value() + 1, middle.x, middle.y, middle.z),
+                        fmt::format("segment {} can't be split any further: its pieces have shrunk to {} near ({}, {}, {})",
+                                    s.segment.value() + 1, distance(a, b), middle.x, middle.y, middle.z),
                         {{EntityKind::segment, s.segment.value() + 1, middle}});
     const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::segment, request.reason, s.segment.value(), request.parent, 0});
     for (const Subsegment& half : {Subsegment{s.a, v, s.segment}, Subsegment{v, s.b, s.segment}})

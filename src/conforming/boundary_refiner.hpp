@@ -72,6 +72,7 @@ private:
     void inserted(VertexId v);
     void poll_or_throw();
     void queue_chain(SegmentId s);
+    [[nodiscard]] double segment_length(SegmentId s) const;
     void try_insert_on_facet(FacetId f, const Vec3& wanted, TetId near, const SplitRequest& request);
 
     ConformingMesh& mesh_;

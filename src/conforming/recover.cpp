@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "conforming/boundary_refiner.hpp"
-#include "conforming/facet_triangulation.hpp"
+#include "conforming/facet_delaunay.hpp"
 #include "conforming/place_point.hpp"
 #include "core/check.hpp"
 #include "core/rng.hpp"
@@ -44,8 +44,8 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
         if (round > kTooManyRounds)
             throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("facet {} could not be recovered", mesh_.plc().facets[f.index()].source_facet + 1),
                             {{EntityKind::facet, mesh_.plc().facets[f.index()].source_facet + 1, mesh_.plc().facets[f.index()].origin}});
-        FacetTriangulation flat(mesh_, f);
-        const std::vector<FacetTriangulation::Missing> missing = flat.match_faces(mesh_);
+        FacetDelaunay flat(mesh_, f);
+        const std::vector<FacetDelaunay::Missing> missing = flat.match_faces(mesh_);
         if (missing.empty()) {
             mesh_.clear_facet(f);
             for (const TetFace tf : flat.faces()) mesh_.label_face(tf, f);

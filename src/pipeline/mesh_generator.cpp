@@ -69,7 +69,12 @@ public:
         result_.statistics.certificate_tolerance = bounds.tolerance;
         result_.statistics.certificate_flat_angle_rad = bounds.flat_angle_rad;
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
-        fail_if_refuted();
+        try {
+            fail_if_refuted();
+        } catch (const MeshError& e) {
+            if (!valid.acute_features.empty()) throw acute_failure(valid, e);
+            throw;
+        }
         report_goals(result_, options_, valid);
         result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
         return std::move(result_);
@@ -78,7 +83,8 @@ public:
 private:
     void fill(const ValidPlc& valid) {
         ConformingMesh mesh = timed(Stage::delaunay, [&] { return ConformingMesh(valid); });
-        if (!valid.acute_features.empty()) guard_.set_ceiling(100 * valid.vertices.size() + 50'000);
+        const bool acute = !valid.acute_features.empty();
+        if (acute) guard_.set_ceiling(10 * valid.vertices.size() + 20'000);
         BoundaryRefiner boundary(mesh, guard_, options_.seed);
         const auto count = [&] {
             vertices_ = mesh.vertex_count();
@@ -90,6 +96,7 @@ private:
             count();
         });
         Refiner refiner(mesh, boundary, guard_, options_);
+        if (acute) guard_.set_ceiling(20 * mesh.vertex_count() + 50'000 + 4 * expected_vertices(valid, refiner.sizes()));
         if (const double theta = options_.quality.min_dihedral_angle_deg; theta > 0)
             refiner.set_sliver_cosine(std::cos(std::min(theta, kPickingAngleDeg) * (std::numbers::pi / 180)), kPickingCandidates);
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
@@ -108,6 +115,14 @@ private:
         result_.mesh = extract_mesh(mesh);
         result_.statistics.guarded_insertions = refiner.statistics().guarded;
         result_.termination = termination(verdict);
+    }
+
+    /// What the size goals alone ask for: refinement makes about 0.75 vertices a cubed circumradius bound, 0.4 a volume bound.
+    static std::uint64_t expected_vertices(const ValidPlc& valid, const std::vector<CellSize>& sizes) {
+        double n = 0;
+        for (std::size_t c = 0; c < sizes.size(); ++c)
+            if (valid.cells[c].filled) n += valid.cells[c].volume * (0.75 / std::pow(sizes[c].max_squared_circumradius, 1.5) + 0.4 / sizes[c].max_volume);
+        return static_cast<std::uint64_t>(std::min(n, 4e9));
     }
 
     /// Delaunay, conforming and Gabriel hold or the run fails; shape and size are asked and achieved instead.

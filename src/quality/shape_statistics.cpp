@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace wellmesh {
@@ -32,6 +33,8 @@ namespace {
 
 constexpr std::array<std::array<std::size_t, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
+constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
+
 /// For every vertex the higher-numbered ends of the edges of one class of tetrahedra, with repetitions.
 struct EdgeBuckets {
     std::vector<std::size_t> first;
@@ -50,13 +53,7 @@ struct EdgeBuckets {
         for_edges([&](const auto& e) { ends[first[std::size_t{e.first} + 1]++] = e.second; });
     }
 
-    /// Sorts the bucket of v, drops repetitions and returns what is left.
-    std::pair<const std::uint32_t*, const std::uint32_t*> distinct(std::size_t v) {
-        std::uint32_t* const begin = ends.data() + first[v];
-        std::uint32_t* const end = ends.data() + first[v + 1];
-        std::sort(begin, end);
-        return {begin, std::unique(begin, end)};
-    }
+    [[nodiscard]] std::pair<const std::uint32_t*, const std::uint32_t*> bucket(std::size_t v) const { return {ends.data() + first[v], ends.data() + first[v + 1]}; }
 };
 
 struct EdgeLengths {
@@ -80,18 +77,24 @@ struct EdgeLengths {
 }  // namespace
 
 void measure_edges(const TetMesh& mesh, const std::vector<TetClass>& classes, ShapeStatistics& all, ShapeStatistics& interior, ShapeStatistics& boundary) {
-    EdgeBuckets inside(mesh, classes, TetClass::interior), outside(mesh, classes, TetClass::boundary);
+    const EdgeBuckets inside(mesh, classes, TetClass::interior), outside(mesh, classes, TetClass::boundary);
     EdgeLengths of_all, of_inside, of_outside;
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        auto [i, i_end] = inside.distinct(v);
-        auto [o, o_end] = outside.distinct(v);
-        while (i != i_end || o != o_end) {  // merges two ascending lists
-            const bool take_inside = i != i_end && (o == o_end || *i <= *o), take_outside = o != o_end && (i == i_end || *o <= *i);
-            const double length = distance(mesh.vertices[v], mesh.vertices[take_inside ? *i : *o]);
-            of_all.add(length);
-            if (take_inside) of_inside.add(length), ++i;
-            if (take_outside) of_outside.add(length), ++o;
-        }
+    // The lower end of the last edge found inside, and outside, whose higher end is this vertex: repetitions need no sorting.
+    std::vector<std::uint32_t> last_inside(mesh.vertices.size(), kNoVertex), last_outside(mesh.vertices.size(), kNoVertex);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const auto v = static_cast<std::uint32_t>(i);
+        const auto visit = [&](const EdgeBuckets& buckets, std::vector<std::uint32_t>& last, EdgeLengths& lengths, const std::vector<std::uint32_t>* counted) {
+            const auto [begin, end] = buckets.bucket(v);
+            for (const std::uint32_t* w = begin; w != end; ++w) {
+                if (last[*w] == v) continue;
+                last[*w] = v;
+                const double length = distance(mesh.vertices[v], mesh.vertices[*w]);
+                lengths.add(length);
+                if (counted == nullptr || (*counted)[*w] != v) of_all.add(length);
+            }
+        };
+        visit(inside, last_inside, of_inside, nullptr);
+        visit(outside, last_outside, of_outside, &last_inside);
     }
     of_all.store(all);
     of_inside.store(interior);

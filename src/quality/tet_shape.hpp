@@ -81,13 +81,41 @@ inline double min_dihedral_deg(const Vec3& a, const Vec3& b, const Vec3& c, cons
     return std::acos(std::min(max_cos_dihedral(a, b, c, d), 1.0)) * (180 / std::numbers::pi);
 }
 
-/// The six dihedral angles in degrees, at the edges opposite to ab, ac, ad, bc, bd, cd in this order. By atan2 of the unit normals' cross and dot
-/// products: as accurate for angles near 0 and 180 as the normals are.
+/// Dihedral angle in degrees between two faces with these inward unit normals. By atan2 of cross and dot product: as accurate for angles
+/// near 0 and 180 as the normals are.
+inline double dihedral_between_deg(const Vec3& p, const Vec3& q) { return std::atan2(norm(cross(p, q)), -dot(p, q)) * (180 / std::numbers::pi); }
+
+/// The six dihedral angles in degrees, at the edges opposite to ab, ac, ad, bc, bd, cd in this order.
 inline std::array<double, 6> dihedral_angles_deg(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
     for (Vec3& v : n) v = (1 / norm(v)) * v;
-    const auto angle = [](const Vec3& p, const Vec3& q) { return std::atan2(norm(cross(p, q)), -dot(p, q)) * (180 / std::numbers::pi); };
-    return {angle(n[0], n[1]), angle(n[0], n[2]), angle(n[0], n[3]), angle(n[1], n[2]), angle(n[1], n[3]), angle(n[2], n[3])};
+    return {dihedral_between_deg(n[0], n[1]), dihedral_between_deg(n[0], n[2]), dihedral_between_deg(n[0], n[3]),
+            dihedral_between_deg(n[1], n[2]), dihedral_between_deg(n[1], n[3]), dihedral_between_deg(n[2], n[3])};
+}
+
+struct AngleRange {
+    double least = 0, greatest = 0;
+};
+
+/// Smallest and largest of the six dihedral angles in degrees, from inward unit normals. Cosines tell which two edges have them, so two
+/// arctangents are enough; but not where a cosine is within 1e-3 of 1 or -1 (2.6 degrees), as it hardly tells small angles apart.
+/// Elsewhere two angles whose cosines cannot be told apart differ by less than 1e-14.
+inline AngleRange dihedral_range_deg(const std::array<Vec3, 4>& n) {
+    constexpr std::array<std::array<std::size_t, 2>, 6> kPairs{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+    std::array<double, 6> negative_cosines{};
+    for (std::size_t i = 0; i < 6; ++i) negative_cosines[i] = dot(n[kPairs[i][0]], n[kPairs[i][1]]);
+    const auto angle = [&](std::size_t i) { return dihedral_between_deg(n[kPairs[i][0]], n[kPairs[i][1]]); };
+    const auto told_apart = [](double cosine) { return std::abs(cosine) < 1 - 1e-3; };  // false for NaN
+    if (std::all_of(negative_cosines.begin(), negative_cosines.end(), told_apart)) {
+        std::size_t least = 0, greatest = 0;
+        for (std::size_t i = 1; i < 6; ++i) {
+            if (negative_cosines[i] < negative_cosines[least]) least = i;
+            if (negative_cosines[i] > negative_cosines[greatest]) greatest = i;
+        }
+        return {angle(least), angle(greatest)};
+    }
+    const std::array<double, 6> angles{angle(0), angle(1), angle(2), angle(3), angle(4), angle(5)};
+    return {*std::min_element(angles.begin(), angles.end()), *std::max_element(angles.begin(), angles.end())};
 }
 
 /// All measures at once.
@@ -97,10 +125,15 @@ inline TetShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3
     s.volume = determinant(u, v, w) / 6;
     s.shortest_edge = std::sqrt(shortest_edge_squared(a, b, c, d));
     double twice_surface = 0;
-    for (const Vec3& n : inward_face_normals(a, b, c, d)) twice_surface += norm(n);
-    const std::array<double, 6> angles = dihedral_angles_deg(a, b, c, d);
-    s.min_dihedral_deg = *std::min_element(angles.begin(), angles.end());
-    s.max_dihedral_deg = *std::max_element(angles.begin(), angles.end());
+    std::array<Vec3, 4> normals = inward_face_normals(a, b, c, d);
+    for (Vec3& n : normals) {
+        const double length = norm(n);
+        twice_surface += length;
+        n = (1 / length) * n;
+    }
+    const AngleRange angles = dihedral_range_deg(normals);
+    s.min_dihedral_deg = angles.least;
+    s.max_dihedral_deg = angles.greatest;
     const double volume = std::abs(s.volume);
     if (volume == 0) {
         s.circumradius = s.radius_edge = s.aspect = std::numeric_limits<double>::infinity();

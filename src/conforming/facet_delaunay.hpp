@@ -11,13 +11,13 @@ namespace wellmesh {
 
 /// The planar triangulation is the link of one apex point above the plane: the planar in-circle test is the in-sphere test of
 /// tetrahedra with the apex, so the three-dimensional kernel serves, exact and with consistent ties.
-class FacetTriangulation {
+class FacetDelaunay {
 public:
     struct Missing {
         std::array<VertexId, 3> corners{};
     };
 
-    FacetTriangulation(const ConformingMesh& mesh, FacetId f);
+    FacetDelaunay(const ConformingMesh& mesh, FacetId f);
 
     /// Compares with the mesh. @return triangles that are covered by no faces of the mesh, largest first.
     std::vector<Missing> match_faces(ConformingMesh& mesh);

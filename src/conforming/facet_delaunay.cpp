@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "conforming/facet_triangulation.hpp"
+#include "conforming/facet_delaunay.hpp"
 
 #include <algorithm>
 #include <map>
@@ -10,12 +10,12 @@
 
 namespace wellmesh {
 
-FacetTriangulation::FacetTriangulation(const ConformingMesh& mesh, FacetId f) : facet_(f) {
+FacetDelaunay::FacetDelaunay(const ConformingMesh& mesh, FacetId f) : facet_(f) {
     collect_vertices(mesh);
     triangulate();
 }
 
-void FacetTriangulation::collect_vertices(const ConformingMesh& mesh) {
+void FacetDelaunay::collect_vertices(const ConformingMesh& mesh) {
     const ValidPlc& plc = mesh.plc();
     const ValidFacet& facet = plc.facets[facet_.index()];
     vertices_ = facet.vertices;
@@ -41,12 +41,12 @@ void FacetTriangulation::collect_vertices(const ConformingMesh& mesh) {
     }
 }
 
-double FacetTriangulation::area2(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+double FacetDelaunay::area2(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     const Vec3 u = flat_[b] - flat_[a], v = flat_[c] - flat_[a];
     return u.x * v.y - u.y * v.x;
 }
 
-void FacetTriangulation::triangulate() {
+void FacetDelaunay::triangulate() {
     Vec3 lo, hi;
     bounding_box(flat_, lo, hi);
     std::vector<Vec3> points = flat_;
@@ -74,7 +74,7 @@ void FacetTriangulation::triangulate() {
     }
 }
 
-bool FacetTriangulation::is_inside(const Vec3& uv, const ConformingMesh& mesh) const {
+bool FacetDelaunay::is_inside(const Vec3& uv, const ConformingMesh& mesh) const {
     const ValidFacet& facet = mesh.plc().facets[facet_.index()];
     const auto local = [&](VertexId v) {
         return static_cast<std::uint32_t>(std::lower_bound(facet.vertices.begin(), facet.vertices.end(), v) - facet.vertices.begin());
@@ -90,7 +90,7 @@ bool FacetTriangulation::is_inside(const Vec3& uv, const ConformingMesh& mesh) c
 }
 
 /// Drops the triangles outside the facet: components between subsegments, each judged at the middle of its largest triangle.
-void FacetTriangulation::keep_inside(ConformingMesh& mesh) {
+void FacetDelaunay::keep_inside(ConformingMesh& mesh) {
     std::vector<std::uint32_t> component(triangles_.size(), kNone);
     std::vector<char> inside;
     for (std::uint32_t seed = 0; seed < triangles_.size(); ++seed) {
@@ -140,7 +140,7 @@ void FacetTriangulation::keep_inside(ConformingMesh& mesh) {
 }
 
 /// Advances a front from the outline of a cluster of missing triangles over faces of the mesh until the cluster is covered.
-bool FacetTriangulation::cover(ConformingMesh& mesh, const std::vector<std::size_t>& cluster, std::vector<TetFace>& faces) const {
+bool FacetDelaunay::cover(ConformingMesh& mesh, const std::vector<std::size_t>& cluster, std::vector<TetFace>& faces) const {
     const double turn = area2(triangles_[cluster[0]][0], triangles_[cluster[0]][1], triangles_[cluster[0]][2]) > 0 ? 1 : -1;
     std::map<VertexId, std::uint32_t> local;
     std::map<std::pair<std::uint32_t, std::uint32_t>, bool> front;  // directed edges with the uncovered part on the triangles' side
@@ -195,7 +195,7 @@ bool FacetTriangulation::cover(ConformingMesh& mesh, const std::vector<std::size
     return true;
 }
 
-std::vector<FacetTriangulation::Missing> FacetTriangulation::match_faces(ConformingMesh& mesh) {
+std::vector<FacetDelaunay::Missing> FacetDelaunay::match_faces(ConformingMesh& mesh) {
     keep_inside(mesh);
     faces_.clear();
     std::vector<char> missing(triangles_.size(), 0);
