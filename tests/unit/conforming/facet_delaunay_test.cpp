@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "conforming/facet_triangulation.hpp"
+#include "conforming/facet_delaunay.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
 
@@ -60,27 +60,27 @@ double area_of(const ConformingMesh& mesh, const std::vector<TetFace>& faces) {
     return area;
 }
 
-TEST(FacetTriangulation, LatticeInACoordinatePlaneNeedsNoPoint) {
+TEST(FacetDelaunay, LatticeInACoordinatePlaneNeedsNoPoint) {
     for (const unsigned n : {2U, 3U, 5U, 8U}) {
         SCOPED_TRACE(n);
         StagedMesh staged(box_with_lattice(n));
         const FacetId top = facet_with_most_vertices(staged.plc);
         ASSERT_EQ(staged.plc.facets[top.index()].vertices.size(), (n + 1) * (n + 1));
-        FacetTriangulation flat(staged.mesh, top);
+        FacetDelaunay flat(staged.mesh, top);
         EXPECT_TRUE(flat.match_faces(staged.mesh).empty());
         EXPECT_EQ(flat.faces().size(), 2 * n * n);
         EXPECT_DOUBLE_EQ(area_of(staged.mesh, flat.faces()), n * n);
     }
 }
 
-TEST(FacetTriangulation, RotatedLatticesAreCoveredBySomeDiagonals) {
+TEST(FacetDelaunay, RotatedLatticesAreCoveredBySomeDiagonals) {
     for (std::uint64_t rotation = 1; rotation <= 12; ++rotation) {
         SCOPED_TRACE(rotation);
         StagedMesh staged(transformed(box_with_lattice(6), rotation, rotation % 3 == 0 ? 1e3 : 0, 1));
         staged.boundary.recover_all();
         ASSERT_EQ(staged.problem(false), "");
         const FacetId top = facet_with_most_vertices(staged.plc);
-        FacetTriangulation flat(staged.mesh, top);
+        FacetDelaunay flat(staged.mesh, top);
         EXPECT_TRUE(flat.match_faces(staged.mesh).empty());
         EXPECT_NEAR(area_of(staged.mesh, flat.faces()), 36, 1e-6);
         EXPECT_TRUE(staged.mesh.steiner_vertices_of(top).empty());
@@ -89,14 +89,14 @@ TEST(FacetTriangulation, RotatedLatticesAreCoveredBySomeDiagonals) {
     }
 }
 
-TEST(FacetTriangulation, AgreesWithTheLabelsOfEveryRecoveredFacet) {
+TEST(FacetDelaunay, AgreesWithTheLabelsOfEveryRecoveredFacet) {
     for (const NamedPlc& named : all_synthetic_plcs())
         for (std::uint64_t rotation = 0; rotation < 4; ++rotation) {
             SCOPED_TRACE(named.name);
             StagedMesh staged(transformed(named.plc, rotation, 0, 1));
             staged.conform();
             for (std::size_t f = 0; f < staged.plc.facets.size(); ++f) {
-                FacetTriangulation flat(staged.mesh, FacetId{f});
+                FacetDelaunay flat(staged.mesh, FacetId{f});
                 ASSERT_TRUE(flat.match_faces(staged.mesh).empty());
                 double labelled = 0;
                 for (std::size_t i = 0; i < staged.mesh.tets().slots(); ++i)
@@ -109,7 +109,7 @@ TEST(FacetTriangulation, AgreesWithTheLabelsOfEveryRecoveredFacet) {
         }
 }
 
-TEST(FacetTriangulation, NamesTrianglesThatTheMeshLacks) {
+TEST(FacetDelaunay, NamesTrianglesThatTheMeshLacks) {
     // A vertex close above the middle of a large facet: the Delaunay edge to a vertex close below runs through the facet.
     Plc plc = cube(4);
     plc.vertices.push_back({1, 1, 2});
@@ -126,7 +126,7 @@ TEST(FacetTriangulation, NamesTrianglesThatTheMeshLacks) {
     StagedMesh staged(plc);
     const FacetId inner{6};
     ASSERT_EQ(staged.plc.facets[6].vertices.size(), 4U);
-    FacetTriangulation flat(staged.mesh, inner);
+    FacetDelaunay flat(staged.mesh, inner);
     EXPECT_FALSE(flat.match_faces(staged.mesh).empty());
     staged.conform();
     EXPECT_EQ(staged.problem(true), "");
