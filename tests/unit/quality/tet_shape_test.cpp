@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -70,6 +71,18 @@ TEST(TetShape, AnglesBelongToTheEdgesStated) {
     // in the order of the opposite edges: cd, bd, bc, ad, ac, ab
     for (const std::size_t i : {0U, 1U, 2U}) EXPECT_NEAR(angles[i], std::acos(1 / std::sqrt(3.0)) * 180 / std::numbers::pi, 1e-12);
     for (const std::size_t i : {3U, 4U, 5U}) EXPECT_NEAR(angles[i], 90, 1e-12);
+}
+
+TEST(TetShape, ExtremesAreThoseOfTheSixAnglesHoweverFlat) {
+    for (std::uint64_t key = 0; key < 3000; ++key) {
+        const auto draw = [&](std::uint64_t i) { return 2 * unit_double(mix64(71, 16 * key + i)) - 1; };
+        const double height = std::pow(10.0, -12 * unit_double(mix64(72, key)));  // from well shaped to almost flat, and needles
+        const Vec3 a{0, 0, 0}, b{1, draw(0), height * draw(1)}, c{draw(2), draw(3), height * draw(4)}, d{draw(5), key % 2 == 0 ? draw(6) : height, height * draw(7)};
+        const std::array<double, 6> angles = dihedral_angles_deg(a, b, c, d);
+        const TetShape s = shape_of(a, b, c, d);
+        EXPECT_NEAR(s.min_dihedral_deg, *std::min_element(angles.begin(), angles.end()), 1e-12) << key;
+        EXPECT_NEAR(s.max_dihedral_deg, *std::max_element(angles.begin(), angles.end()), 1e-12) << key;
+    }
 }
 
 TEST(TetShape, FastAngleAgreesWithTheAccurateOne) {
