@@ -121,8 +121,6 @@ TEST(FacetDelaunay, NamesTrianglesThatTheMeshLacks) {
     plc.facets.push_back(square);
     plc.vertices.push_back({2.1, 1.9, 2.2});
     plc.vertices.push_back({1.9, 2.1, 1.8});
-    plc.segments.push_back({{12, 7}, 0});
-    plc.segments.push_back({{13, 0}, 0});
     StagedMesh staged(plc);
     const FacetId inner{6};
     ASSERT_EQ(staged.plc.facets[6].vertices.size(), 4U);

@@ -36,6 +36,7 @@ std::vector<std::map<std::string, std::string>> manifest() {
 
 /// The malformed files that must not be read, and words of the reason.
 const std::map<std::string, std::vector<std::string>> kRejected{{"malformed/OutOfMemory.off", {":2:", "353535235358"}},
+                                                                {"malformed/L.smesh", {":8:", "repeats"}},
                                                                 {"malformed/malformed.obj", {"vertex"}},
                                                                 {"malformed/invalid.off", {"vertex 20"}},
                                                                 {"malformed/invalidvertex.stl", {":89:", "'blah'"}},
