@@ -13,7 +13,7 @@
 
 namespace wellmesh {
 
-/// A point for a split. `fraction` of the picking region: 0 is its centre.
+/// Why something is split: for the vertex's record.
 struct SplitRequest {
     InsertionReason reason = InsertionReason::encroachment;
     VertexId parent{};  ///< the encroaching vertex, or the one responsible for the tetrahedron whose centre encroaches
@@ -27,15 +27,15 @@ public:
     std::function<void(VertexId)> on_insert{};
     /// Called after recovery has found all cells anew (tetrahedra may have changed cells).
     std::function<void()> on_repair{};
-    /// Chooses among candidate points of a picking region (best first); returns the index of the one to use. Empty: always 0.
-    using Judge = std::function<bool(const Cavity&, const Placement&)>;  ///< does the star of this point hold no new small sliver?
+    /// Accepts or rejects a candidate point of a picking region; the first accepted one is used, or the centre. Empty: the centre always.
+    using Judge = std::function<bool(const Cavity&, const Placement&)>;  ///< true: the star of this point holds no new small sliver
     Judge judge{};
     unsigned candidates = 1;
 
     /// Makes every segment a chain of edges and every facet a union of faces, then finds the cell of every tetrahedron.
     /// @throws MeshError{budget_exhausted, cancelled, unsupported_acute}
     void recover_all();
-    /// Splits until nothing is encroached; recovers what splits destroyed. @return false if the guard stopped it between two splits.
+    /// Splits until nothing is encroached; recovers what splits destroyed. @return true. @throws as recover_all does.
     bool conform();
     /// Splits at most one subsegment or subface. @return false if none is waiting.
     bool step();
