@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <tuple>
 
 #include "core/check.hpp"
 #include "delaunay/collinear.hpp"
@@ -11,14 +12,12 @@
 namespace wellmesh {
 
 VertexId Triangulation::add_point(const Vec3& p) {
-    points_.push_back(p);
-    vertex_tet_.emplace_back();
-    return VertexId{points_.size() - 1};
+    vertices_.push_back({p});
+    return VertexId{vertices_.size() - 1};
 }
 
 void Triangulation::reserve(std::size_t vertices) {
-    points_.reserve(vertices);
-    vertex_tet_.reserve(vertices);
+    vertices_.reserve(vertices);
     tets_.reserve(7 * vertices);  // 6.77 tetrahedra a vertex for random points
 }
 
@@ -40,7 +39,7 @@ void Triangulation::start(VertexId a, VertexId b, VertexId c, VertexId d) {
             const auto& corners = tets_.corners(inner);
             tets_.connect(TetFace{ghosts[f], tets_.find_corner(ghosts[f], corners[g])}, TetFace{ghosts[g], tets_.find_corner(ghosts[g], corners[f])});
         }
-    for (const VertexId v : {a, b, c, d}) vertex_tet_[v.index()] = inner;
+    for (const VertexId v : {a, b, c, d}) vertices_[v.index()].tet = inner;
     last_located_ = inner;
 }
 
@@ -48,96 +47,126 @@ TetId Triangulation::create_tet(std::size_t recycled, const std::vector<TetId>& 
     return recycled < pool.size() ? pool[recycled] : tets_.allocate();
 }
 
-void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
-    const std::size_t n = cavity.boundary.size();
-    new_tets_.clear();
-    outside_.clear();
-    local_.clear();
-    // Read all faces before any tetrahedron is overwritten: new ones take the ids of deleted ones.
-    static_assert(sizeof(std::array<VertexId, 3>) == 12);
-    thread_local std::vector<std::array<VertexId, 3>> faces;
-    faces.clear();
-    for (const BoundaryFace& b : cavity.boundary) {
-        faces.push_back(tets_.face_corners(b.inside));
-        outside_.push_back(b.outside);
-    }
+void Triangulation::clear_local_numbers(std::size_t most) {
+    if (local_.size() < most + 1) local_.resize(2 * most + 1);
+    local_[0] = kInfiniteVertex;
+    local_count_ = 1;
+}
+
+/// Two new tetrahedra meet in a face (v, x, y) iff their boundary faces share the edge xy, which they list in opposite directions: a table
+/// over pairs of local numbers, usually 4 kB and so in the first-level cache, finds the partner without a search.
+///
+/// New tetrahedron i is (f0, f1, f2, v) for the boundary face (f0, f1, f2), so that its face k is the one opposite to f_k. At the hull
+/// the face is turned until infinity is f2; (f0, f1, inf, v) is positive, hence so is (f1, f0, v, inf).
+template <bool kOnHull, bool kByTable>
+void Triangulation::create_new_tets(VertexId v, const Cavity& cavity) {
+    const std::size_t n = faces_.size();
+    const std::size_t stride = kByTable ? std::max<std::size_t>(32, std::bit_ceil(std::size_t{local_count_})) : 0;  // without a table all edges share a cell
+    if (edge_table_.size() < stride * stride + 1) edge_table_.resize(stride * stride + 1);
+    auto face_number = [](const NewFace& f, unsigned k) -> unsigned {
+        if (!kOnHull || f.corners[2] != kInfiniteVertex) return k;
+        constexpr std::array<std::uint8_t, 3> kGhostFace{1, 0, 3};
+        return kGhostFace[k];
+    };
     for (std::size_t i = 0; i < n; ++i) {
         const TetId t = create_tet(i, cavity.tets);
-        new_tets_.push_back(t);
-        auto& f = faces[i];
-        if (f[2] == kInfiniteVertex || f[1] == kInfiniteVertex || f[0] == kInfiniteVertex) {
-            // Turn the face until infinity is last; (f0, f1, inf, v) is positive, hence so is (f1, f0, v, inf).
-            while (f[2] != kInfiniteVertex) f = {f[1], f[2], f[0]};
-            tets_.set_corners(t, {f[1], f[0], v, kInfiniteVertex});
-            tets_.connect(TetFace{t, 2}, outside_[i]);
-        } else {
-            tets_.set_corners(t, {f[0], f[1], f[2], v});
-            tets_.connect(TetFace{t, 3}, outside_[i]);
-            vertex_tet_[f[0].index()] = vertex_tet_[f[1].index()] = vertex_tet_[f[2].index()] = t;
-            vertex_tet_[v.index()] = t;
+        new_tets_[i] = t;
+        const NewFace& f = faces_[i];
+        const auto [a, b, c] = f.local;
+        edge_table_[b * stride + c] = TetFace{t, face_number(f, 0)};
+        edge_table_[c * stride + a] = TetFace{t, face_number(f, 1)};
+        edge_table_[a * stride + b] = TetFace{t, face_number(f, 2)};
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        const NewFace& f = faces_[i];
+        const TetId t = new_tets_[i];
+        const auto [a, b, c] = f.local;
+        const TetFace across0 = edge_table_[c * stride + b], across1 = edge_table_[a * stride + c], across2 = edge_table_[b * stride + a];
+        if (kOnHull && f.corners[2] == kInfiniteVertex) {
+            tets_.set(t, {f.corners[1], f.corners[0], v, kInfiniteVertex}, {across1, across0, f.outside, across2});
+            tets_.set_across(f.outside, TetFace{t, 2});
+            continue;
         }
+        tets_.set(t, {f.corners[0], f.corners[1], f.corners[2], v}, {across0, across1, across2, f.outside});
+        tets_.set_across(f.outside, TetFace{t, 3});
+        for (const VertexId x : f.corners) vertices_[x.index()].tet = t;
+        vertices_[v.index()].tet = t;
+    }
+}
+
+/// Large cavities, where the table would not stay in the cache: sets the adjacencies between new tetrahedra.
+void Triangulation::join_by_sorting() {
+    struct Edge {
+        VertexId low, high;
+        TetFace face;
+    };
+    std::vector<Edge> edges;
+    edges.reserve(3 * new_tets_.size());
+    for (const TetId t : new_tets_) {
+        const unsigned base = tets_.is_ghost(t) ? 2 : 3;  // the corner v, opposite to the boundary face
+        for (unsigned f = 0; f < 4; ++f) {
+            if (f == base) continue;
+            std::array<VertexId, 2> edge{};
+            std::size_t found = 0;
+            for (unsigned c = 0; c < 4; ++c)
+                if (c != base && c != f) edge[found++] = tets_.corner(t, c);
+            edges.push_back({std::min(edge[0], edge[1]), std::max(edge[0], edge[1]), TetFace{t, f}});
+        }
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& p, const Edge& q) { return std::tie(p.low, p.high) < std::tie(q.low, q.high); });
+    for (std::size_t i = 0; i + 1 < edges.size(); i += 2) {
+        WELLMESH_CHECK(Stage::delaunay, edges[i].low == edges[i + 1].low && edges[i].high == edges[i + 1].high);
+        tets_.connect(edges[i].face, edges[i + 1].face);
+    }
+}
+
+void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
+    const std::size_t n = cavity.boundary.size();
+    faces_.resize(n);
+    new_tets_.resize(n);
+    clear_local_numbers(3 * n);
+    bool on_hull = false;
+    // Read all faces before any tetrahedron is overwritten: new ones take the ids of deleted ones.
+    for (std::size_t i = 0; i < n; ++i) {
+        auto corners = tets_.face_corners(cavity.boundary[i].inside);
+        if (corners[0] == kInfiniteVertex || corners[1] == kInfiniteVertex || corners[2] == kInfiniteVertex) {
+            on_hull = true;
+            while (corners[2] != kInfiniteVertex) corners = {corners[1], corners[2], corners[0]};
+        }
+        faces_[i] = {corners, {local_number(corners[0]), local_number(corners[1]), local_number(corners[2])}, cavity.boundary[i].outside};
+    }
+    constexpr std::size_t kLargestTable = 128;
+    if (local_count_ > kLargestTable) {
+        create_new_tets<true, false>(v, cavity);
+        join_by_sorting();
+    } else if (on_hull) {
+        create_new_tets<true, true>(v, cavity);
+    } else {
+        create_new_tets<false, true>(v, cavity);
     }
     for (std::size_t i = n; i < cavity.tets.size(); ++i) tets_.release(cavity.tets[i]);
-
-    // Two new tetrahedra meet in a face (v, x, y) iff their boundary faces share the edge xy, which they list in opposite directions.
-    thread_local std::vector<std::array<std::uint32_t, 3>> slots;
-    slots.resize(n);
-    for (std::size_t i = 0; i < n; ++i) slots[i] = {local_(faces[i][0]), local_(faces[i][1]), local_(faces[i][2])};
-    const std::size_t m = local_.size();
-    constexpr std::size_t kLargestTable = 128;
-    const std::size_t stride = std::max<std::size_t>(32, std::bit_ceil(m));  // usually 32: 4 kB, in the first-level cache
-    auto face_opposite = [&](std::size_t i, unsigned k) {
-        // Face of new tetrahedron i opposite to corner faces[i][k]; see the two layouts above.
-        const bool ghost = faces[i][2] == kInfiniteVertex;
-        return TetFace{new_tets_[i], ghost ? (k == 0 ? 1U : k == 1 ? 0U : 3U) : k};
-    };
-    if (m <= kLargestTable) {
-        edge_table_.resize(std::max(edge_table_.size(), stride * stride));
-        for (std::size_t i = 0; i < n; ++i) {
-            const auto& s = slots[i];
-            for (unsigned k = 0; k < 3; ++k) edge_table_[s[(k + 1) % 3] * stride + s[(k + 2) % 3]] = face_opposite(i, k);
-        }
-        for (std::size_t i = 0; i < n; ++i) {
-            const auto& s = slots[i];
-            for (unsigned k = 0; k < 3; ++k) {
-                const unsigned from = s[(k + 1) % 3], to = s[(k + 2) % 3];
-                if (from < to) tets_.connect(face_opposite(i, k), edge_table_[to * stride + from]);
-            }
-        }
-    } else {
-        // Large cavities: sort the edges instead.
-        std::vector<std::pair<std::array<std::uint32_t, 2>, TetFace>> edges;
-        edges.reserve(3 * n);
-        for (std::size_t i = 0; i < n; ++i)
-            for (unsigned k = 0; k < 3; ++k) {
-                const std::uint32_t x = faces[i][(k + 1) % 3].value(), y = faces[i][(k + 2) % 3].value();
-                edges.push_back({{std::min(x, y), std::max(x, y)}, face_opposite(i, k)});
-            }
-        std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-        for (std::size_t i = 0; i + 1 < edges.size(); i += 2) {
-            WELLMESH_CHECK(Stage::delaunay, edges[i].first == edges[i + 1].first);
-            tets_.connect(edges[i].second, edges[i + 1].second);
-        }
-    }
     last_located_ = new_tets_[0];
 }
 
 bool Triangulation::insert_all(std::span<const Vec3> points) {
-    points_.assign(points.begin(), points.end());
-    return insert_order(biased_spatial_order(points));
+    vertices_.clear();
+    vertices_.reserve(points.size());
+    for (const Vec3& p : points) vertices_.push_back({p});
+    return insert_in_order(biased_spatial_order(points));
 }
 
-bool Triangulation::insert_all_in_order(std::span<const Vec3> points) {
-    points_.assign(points.begin(), points.end());
-    std::vector<std::uint32_t> order(points.size());
-    std::iota(order.begin(), order.end(), 0U);
-    return insert_order(order);
+bool Triangulation::insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order) {
+    vertices_.clear();
+    vertices_.reserve(points.size());
+    for (const std::uint32_t i : order) vertices_.push_back({points[i]});
+    std::vector<std::uint32_t> identity(order.size());
+    std::iota(identity.begin(), identity.end(), 0U);
+    return insert_in_order(identity);
 }
 
-bool Triangulation::insert_order(std::span<const std::uint32_t> order) {
-    vertex_tet_.assign(points_.size(), TetId{});
+bool Triangulation::insert_in_order(std::span<const std::uint32_t> order) {
     tets_.clear();
-    tets_.reserve(7 * points_.size());
+    tets_.reserve(7 * vertices_.size());
     duplicates_ = 0;
     if (order.size() < 4) return false;
 

@@ -45,7 +45,7 @@ TetId Triangulation::locate(const Vec3& p, TetId hint) const {
 
 void Triangulation::find_star(VertexId v, std::vector<TetId>& star) {
     star.clear();
-    const TetId seed = vertex_tet_[v.index()];
+    const TetId seed = vertices_[v.index()].tet;
     next_epoch();
     star.push_back(seed);
     mark_[seed.index()] = epoch_;
@@ -67,7 +67,7 @@ TetId Triangulation::find_edge(VertexId a, VertexId b) {
     next_epoch();
     std::vector<TetId>& stack = star_stack_;
     stack.clear();
-    stack.push_back(vertex_tet_[a.index()]);
+    stack.push_back(vertices_[a.index()].tet);
     mark_[stack[0].index()] = epoch_;
     for (std::size_t i = 0; i < stack.size(); ++i) {
         const TetId t = stack[i];

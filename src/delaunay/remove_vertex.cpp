@@ -40,11 +40,11 @@ private:
         std::sort(s.begin(), s.end());
         return (std::uint64_t{s[0]} << 42) | (std::uint64_t{s[1]} << 21) | s[2];
     }
-    [[nodiscard]] VertexId vertex(std::uint32_t slot) const { return mesh_.local_.vertex(slot); }
-    [[nodiscard]] const Vec3& at(std::uint32_t slot) const { return mesh_.points_[vertex(slot).index()]; }
+    [[nodiscard]] VertexId vertex(std::uint32_t slot) const { return mesh_.local_[slot]; }
+    [[nodiscard]] const Vec3& at(std::uint32_t slot) const { return mesh_.point(vertex(slot)); }
 
     void collect_boundary() {
-        mesh_.local_.clear();
+        mesh_.clear_local_numbers(3 * hole_.star.size());
         hole_.boundary.clear();
         hole_.filling.clear();
         hole_.filling_opposite.clear();
@@ -55,7 +55,7 @@ private:
             Slots s{};
             const auto corners = mesh_.tets_.face_corners(inside);
             for (std::size_t k = 0; k < 3; ++k) {
-                s[k] = mesh_.local_(corners[k]);
+                s[k] = mesh_.local_number(corners[k]);
                 has_infinity_ |= s[k] == 0;
             }
             const TetFace outside = mesh_.tets_.across(inside);
@@ -70,7 +70,7 @@ private:
         const Sign side = mesh_.filter_.orient3d(at(a), at(b), at(c), at(d));
         if (side != Sign::zero) return side == Sign::positive;
         // Coplanar: any point below the plane makes a tetrahedron whose circumsphere cuts the plane in the circle of abc.
-        for (std::uint32_t z = 1; z < mesh_.local_.size(); ++z) {
+        for (std::uint32_t z = 1; z < mesh_.local_count_; ++z) {
             const Sign below = mesh_.filter_.orient3d(at(a), at(b), at(c), at(z));
             if (below == Sign::zero) continue;
             const bool inside = below == Sign::positive
@@ -85,7 +85,7 @@ private:
     /// a point at 0 must not meet one at 180 in the tournament: they are coplanar.
     [[nodiscard]] bool folds_back(std::uint32_t a, std::uint32_t b, const Vec3& w, std::uint32_t d) const {
         if (mesh_.filter_.orient3d(at(a), at(b), w, at(d)) != Sign::zero) return false;
-        for (std::uint32_t z = 1; z < mesh_.local_.size(); ++z) {
+        for (std::uint32_t z = 1; z < mesh_.local_count_; ++z) {
             const Sign side = mesh_.filter_.orient3d(at(a), at(b), w, at(z));
             if (side != Sign::zero) return mesh_.filter_.orient3d(at(a), at(b), at(d), at(z)) == side;
         }
@@ -93,7 +93,7 @@ private:
     }
 
     std::uint32_t best_apex(Slots& s, VertexId behind) {
-        const auto count = static_cast<std::uint32_t>(mesh_.local_.size());
+        const auto count = mesh_.local_count_;
         constexpr std::uint32_t kNobody = 0xffffffffU;
         std::uint32_t best = kNobody;
         if (s[0] == 0 || s[1] == 0 || s[2] == 0) {
@@ -182,13 +182,13 @@ void Triangulation::remove_vertex(const Hole& hole) {
             else if (other / 4 > i || (other / 4 == i)) tets_.connect(mine, TetFace{new_tets_[other / 4], other % 4});
         }
         for (const VertexId v : hole.filling[i])
-            if (v != kInfiniteVertex) vertex_tet_[v.index()] = new_tets_[i];
+            if (v != kInfiniteVertex) vertices_[v.index()].tet = new_tets_[i];
     }
     // A ghost is a poor place to start walking from: prefer finite tetrahedra.
     for (std::size_t i = 0; i < hole.filling.size(); ++i)
         if (hole.filling[i][3] != kInfiniteVertex)
-            for (const VertexId v : hole.filling[i]) vertex_tet_[v.index()] = new_tets_[i];
-    vertex_tet_[hole.vertex.index()] = TetId{};
+            for (const VertexId v : hole.filling[i]) vertices_[v.index()].tet = new_tets_[i];
+    vertices_[hole.vertex.index()].tet = TetId{};
     last_located_ = new_tets_[0];
 }
 

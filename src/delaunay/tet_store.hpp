@@ -52,6 +52,7 @@ public:
     [[nodiscard]] bool is_finite(TetId t) const { return is_live(t) && !is_ghost(t); }
     [[nodiscard]] TetFace across(TetFace tf) const { return tet_[tf.tet().index()].opposite[tf.face()]; }
     [[nodiscard]] TetFace across(TetId t, unsigned f) const { return tet_[t.index()].opposite[f]; }
+    [[nodiscard]] const std::array<TetFace, 4>& across_all(TetId t) const { return tet_[t.index()].opposite; }
     /// Slot of v in t; 4 if v is no corner of t.
     [[nodiscard]] unsigned find_corner(TetId t, VertexId v) const {
         const Corners& c = tet_[t.index()].corner;
@@ -71,6 +72,11 @@ public:
         tet_[a.tet().index()].opposite[a.face()] = b;
         tet_[b.tet().index()].opposite[b.face()] = a;
     }
+    void set(TetId t, const Corners& corners, const std::array<TetFace, 4>& opposite) { tet_[t.index()] = {corners, opposite}; }
+    /// One side of connect().
+    void set_across(TetFace a, TetFace b) { tet_[a.tet().index()].opposite[a.face()] = b; }
+    /// Asks for the record ahead of its use; never faults.
+    void prefetch(TetId t) const { __builtin_prefetch(tet_.data() + t.index()); }
     void reserve(std::size_t tets);
     void clear();
 

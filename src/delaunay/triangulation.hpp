@@ -47,72 +47,28 @@ struct Hole {
     static constexpr std::uint32_t kBoundaryBit = 0x80000000U;
 };
 
-/// Numbers 0, 1, 2, ... for the few vertices of one cavity, in order of first mention; 0 is the vertex at infinity. A small hash table
-/// that stays in the first-level cache, unlike an array over all vertices; emptied by a new stamp.
-class LocalNumbers {
-public:
-    void clear() {
-        vertices_.clear();
-        vertices_.push_back(kInfiniteVertex);
-        if (++stamp_ == 0) {
-            table_.assign(table_.size(), Entry{});
-            stamp_ = 1;
-        }
-    }
-    std::uint32_t operator()(VertexId v) {
-        if (v == kInfiniteVertex) return 0;
-        if (2 * vertices_.size() > table_.size()) grow();
-        for (std::size_t i = (v.value() * 0x9e3779b1U) & (table_.size() - 1);; i = (i + 1) & (table_.size() - 1)) {
-            Entry& e = table_[i];
-            if (e.stamp != stamp_) {
-                e = {v, stamp_, static_cast<std::uint32_t>(vertices_.size())};
-                vertices_.push_back(v);
-                return e.number;
-            }
-            if (e.vertex == v) return e.number;
-        }
-    }
-    [[nodiscard]] std::size_t size() const { return vertices_.size(); }
-    [[nodiscard]] VertexId vertex(std::uint32_t number) const { return vertices_[number]; }
-
-private:
-    struct Entry {
-        VertexId vertex{};
-        std::uint32_t stamp = 0, number = 0;
-    };
-    void grow() {
-        const std::vector<VertexId> known(vertices_.begin() + 1, vertices_.end());
-        table_.assign(2 * table_.size(), Entry{});
-        clear();
-        for (const VertexId v : known) (*this)(v);
-    }
-    std::vector<Entry> table_ = std::vector<Entry>(256);
-    std::vector<VertexId> vertices_;
-    std::uint32_t stamp_ = 0;
-};
-
 class Triangulation {
 public:
     Triangulation() = default;
     /// @param lo, hi  box of all points that will ever be inserted: the static filter is valid there only.
-    Triangulation(const Vec3& lo, const Vec3& hi) : filter_(Vec3{hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}), lo_(lo), hi_(hi) {}
+    Triangulation(const Vec3& lo, const Vec3& hi) : filter_(Vec3{hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}) {}
 
-    /// Starts from four vertices that are not coplanar (ids into points()), already added by add_point.
+    /// Starts from four vertices that are not coplanar (ids), already added by add_point.
     void start(VertexId a, VertexId b, VertexId c, VertexId d);
 
     /// Inserts all of `points` (duplicates are skipped) in a spatially sorted random order; vertex i is points[i].
     /// @return false if all points are coplanar; then nothing was triangulated. Duplicates: see `duplicate_count`.
     bool insert_all(std::span<const Vec3> points);
-    /// The same for points that are in biased_spatial_order() already: neighbours in space are neighbours in memory then.
-    bool insert_all_in_order(std::span<const Vec3> points);
+    /// The same, but vertex i is points[order[i]]: with biased_spatial_order(points) neighbours in space are neighbours in memory.
+    bool insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order);
 
     // --- vertices
     VertexId add_point(const Vec3& p);  ///< stores coordinates, no more
-    [[nodiscard]] const Vec3& point(VertexId v) const { return points_[v.index()]; }
-    [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
-    [[nodiscard]] bool is_inserted(VertexId v) const { return vertex_tet_[v.index()].valid(); }
+    [[nodiscard]] const Vec3& point(VertexId v) const { return vertices_[v.index()].point; }
+    [[nodiscard]] std::size_t vertex_count() const { return vertices_.size(); }  ///< stored, inserted or not
+    [[nodiscard]] bool is_inserted(VertexId v) const { return vertices_[v.index()].tet.valid(); }
     /// Some tetrahedron of the star of v.
-    [[nodiscard]] TetId tet_of(VertexId v) const { return vertex_tet_[v.index()]; }
+    [[nodiscard]] TetId tet_of(VertexId v) const { return vertices_[v.index()].tet; }
     [[nodiscard]] std::size_t duplicate_count() const { return duplicates_; }
 
     // --- queries
@@ -143,22 +99,50 @@ public:
     bool find_hole(VertexId v, Hole& hole);
     /// Replaces the star by the filling (ids in new_tets(), in the order of hole.filling). The point stays stored, not inserted.
     void remove_vertex(const Hole& hole);
-    void set_point(VertexId v, const Vec3& p) { points_[v.index()] = p; }  ///< @pre v is not inserted
+    void set_point(VertexId v, const Vec3& p) { vertices_[v.index()].point = p; }  ///< @pre v is not inserted
 
     void reserve(std::size_t vertices);
 
 private:
+    /// Half a cache line, so that a conflict test, the join to a cavity and the star's entry touch one line a vertex.
+    struct alignas(32) Vertex {
+        Vec3 point;
+        TetId tet{};
+        std::uint32_t local = 0;  ///< place in local_, if that holds this vertex: scratch of one operation
+    };
+    static_assert(sizeof(Vertex) == 32);
+
+    void prefetch_neighbours(TetId t) const {
+        for (unsigned f = 0; f < 4; ++f) {
+            const TetId n = tets_.across(t, f).tet();
+            tets_.prefetch(n);
+            __builtin_prefetch(mark_.data() + n.index());
+        }
+    }
     TetId create_tet(std::size_t recycled, const std::vector<TetId>& pool);
     void ensure_marks();
     void next_epoch();
     [[nodiscard]] bool ghost_in_conflict(TetId t, const Vec3& p) const;
-    bool insert_order(std::span<const std::uint32_t> order);
+    bool insert_in_order(std::span<const std::uint32_t> order);
+    /// Numbers for the vertices of one cavity or hole: forgets all but infinity, which is 0; there is room for `most` more.
+    void clear_local_numbers(std::size_t most);
+    /// 1, 2, 3, ... in order of first mention.
+    std::uint32_t local_number(VertexId v) {
+        if (v == kInfiniteVertex) return 0;
+        std::uint32_t& number = vertices_[v.index()].local;
+        if (number >= local_count_ || local_[number] != v) {
+            number = local_count_++;
+            local_[number] = v;
+        }
+        return number;
+    }
+    template <bool kOnHull, bool kByTable>
+    void create_new_tets(VertexId v, const Cavity& cavity);
+    void join_by_sorting();
 
     TetStore tets_;
     PredicateFilter filter_;
-    Vec3 lo_{}, hi_{};
-    std::vector<Vec3> points_;
-    std::vector<TetId> vertex_tet_;
+    std::vector<Vertex> vertices_;
     std::size_t duplicates_ = 0;
 
     // scratch
@@ -166,8 +150,15 @@ private:
     std::uint32_t epoch_ = 0;
     std::vector<TetId> new_tets_;
     std::vector<TetId> star_stack_;
+    struct NewFace {
+        std::array<VertexId, 3> corners;
+        std::array<std::uint32_t, 3> local;
+        TetFace outside;
+    };
+    std::vector<NewFace> faces_;
     std::vector<TetFace> outside_;
-    LocalNumbers local_;
+    std::vector<VertexId> local_;
+    std::uint32_t local_count_ = 0;
     std::vector<TetFace> edge_table_;
     mutable TetId last_located_{};
 

@@ -27,9 +27,7 @@ DelaunayResult triangulate_points(std::span<const Vec3> points) {
     }
     Triangulation mesh(lo, hi);
     const std::vector<std::uint32_t> order = biased_spatial_order(points);
-    std::vector<Vec3> sorted(points.size());
-    for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = points[order[i]];
-    if (!mesh.insert_all_in_order(sorted)) throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all points lie in one plane: there is no tetrahedron");
+    if (!mesh.insert_all_in_order(points, order)) throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all points lie in one plane: there is no tetrahedron");
     result.duplicates = mesh.duplicate_count();
     const TetStore& tets = mesh.tets();
     std::size_t count = 0;

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// InsphereFormula over the four lanes of a vector register, where the processor has them.
+#pragma once
+
+#include "wellmesh/vec3.hpp"
+
+namespace wellmesh {
+
+/// Whether insphere_value_in_lanes may be called: x86-64 with AVX2.
+[[nodiscard]] bool has_insphere_lanes() noexcept;
+
+/// InsphereFormula::value of the rounded differences to e, with the same number of roundings in every monomial, so that the
+/// same error bounds hold; the order of two sums differs, so the last bits may.
+/// @pre has_insphere_lanes(); a, b, c and d are aligned to 32 bytes and eight more bytes may be read behind each, so that one load fetches it
+[[nodiscard]] double insphere_value_in_lanes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) noexcept;
+
+}  // namespace wellmesh
