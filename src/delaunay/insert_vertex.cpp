@@ -7,6 +7,7 @@
 
 #include "core/check.hpp"
 #include "delaunay/collinear.hpp"
+#include "delaunay/spatial_order.hpp"
 #include "delaunay/triangulation.hpp"
 
 namespace wellmesh {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Biased randomised insertion order [Amenta03] with a Hilbert curve in each round [Skilling04 gives the transform].
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <utility>
 
 #include "core/rng.hpp"
-#include "delaunay/triangulation.hpp"
+#include "delaunay/spatial_order.hpp"
 
 namespace wellmesh {
 namespace {
@@ -38,9 +39,9 @@ std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
     return key;
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> biased_spatial_order(std::span<const Vec3> points) {
+/// Points by the round that `round_of` puts them in (below 16), then along the curve.
+template <class RoundOf>
+std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, RoundOf&& round_of) {
     const std::size_t n = points.size();
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(n);
     if (n == 0) return {};
@@ -51,21 +52,32 @@ std::vector<std::uint32_t> biased_spatial_order(std::span<const Vec3> points) {
     }
     const double extent = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
     const double scale = extent > 0 ? static_cast<double>((1U << kBits) - 1) / extent : 0;
-    // Rounds: a point is in the last round with probability 7/8, in the one before with 7/64, ... [Amenta03]; few rounds are enough.
-    constexpr unsigned kRounds = 8;
     constexpr std::uint64_t kRoundShift = 3 * kBits;
     for (std::size_t i = 0; i < n; ++i) {
-        const auto octets = static_cast<unsigned>(std::countr_zero(mix64(i) | (std::uint64_t{1} << 63))) / 3;
-        const std::uint64_t round = kRounds - 1 - std::min(octets, kRounds - 1);
         const Vec3& p = points[i];
         const std::array<std::uint32_t, 3> cell{static_cast<std::uint32_t>((p.x - lo.x) * scale), static_cast<std::uint32_t>((p.y - lo.y) * scale),
                                                 static_cast<std::uint32_t>((p.z - lo.z) * scale)};
-        keyed[i] = {(round << kRoundShift) | hilbert_key(cell), static_cast<std::uint32_t>(i)};
+        keyed[i] = {(std::uint64_t{round_of(i)} << kRoundShift) | hilbert_key(cell), static_cast<std::uint32_t>(i)};
     }
     std::sort(keyed.begin(), keyed.end());
     std::vector<std::uint32_t> order(n);
     for (std::size_t i = 0; i < n; ++i) order[i] = keyed[i].second;
     return order;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points) {
+    return order_by_rounds(points, [](std::size_t) { return 0U; });
+}
+
+std::vector<std::uint32_t> biased_spatial_order(std::span<const Vec3> points) {
+    // A point is in the last round with probability 7/8, in the one before with 7/64, ... [Amenta03]; few rounds are enough.
+    constexpr unsigned kRounds = 8;
+    return order_by_rounds(points, [](std::size_t i) {
+        const auto octets = static_cast<unsigned>(std::countr_zero(mix64(i) | (std::uint64_t{1} << 63))) / 3;
+        return kRounds - 1 - std::min(octets, kRounds - 1);
+    });
 }
 
 }  // namespace wellmesh

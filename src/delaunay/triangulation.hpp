@@ -165,7 +165,4 @@ private:
     friend class HoleFiller;
 };
 
-/// Permutation of 0..n-1: rounds of doubling size, each sorted along a Hilbert curve; deterministic.
-[[nodiscard]] std::vector<std::uint32_t> biased_spatial_order(std::span<const Vec3> points);
-
 }  // namespace wellmesh

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/vec3_math.hpp"
+#include "delaunay/spatial_order.hpp"
 
 namespace wellmesh {
 namespace {
@@ -40,6 +41,55 @@ void list_constraints(const ConformingMesh& mesh, TetId t, const std::vector<std
     }
 }
 
+/// Numbers the vertices of the output, stores them with their carriers, and lists its tetrahedra: input vertices in the input's order, then
+/// the others along a space-filling curve, tetrahedra by their lowest vertex. So whoever walks through the mesh, a solver or the
+/// certificate, walks through memory.
+template <class InOutput>
+std::vector<TetId> number_output(const ConformingMesh& mesh, InOutput&& in_output, std::vector<std::uint32_t>& number, TetMesh& out) {
+    const TetStore& tets = mesh.tets();
+    const ValidPlc& plc = mesh.plc();
+    for (std::size_t i = 0; i < tets.slots(); ++i)
+        if (in_output(TetId{i}))
+            for (const VertexId v : tets.corners(TetId{i})) number[v.index()] = 0;
+    std::vector<VertexId> order, steiner;
+    std::vector<Vec3> steiner_points;
+    for (std::size_t i = 0; i < number.size(); ++i) {
+        const VertexId v{i};
+        if (number[i] == kUnused) continue;
+        if (mesh.info(v).carrier == CarrierKind::input_vertex) {
+            order.push_back(v);
+        } else {
+            steiner.push_back(v);
+            steiner_points.push_back(mesh.point(v));
+        }
+    }
+    for (const std::uint32_t i : spatial_order(steiner_points)) order.push_back(steiner[i]);
+    out.vertices.reserve(order.size());
+    out.vertex_carriers.reserve(order.size());
+    for (const VertexId v : order) {
+        number[v.index()] = static_cast<std::uint32_t>(out.vertices.size());
+        out.vertices.push_back(mesh.point(v));
+        const VertexInfo& info = mesh.info(v);
+        std::uint32_t id = info.carrier_id;
+        if (info.carrier == CarrierKind::input_vertex) id = plc.source_vertex[id];
+        if (info.carrier == CarrierKind::region) id = static_cast<std::uint32_t>(plc.cells[id].region);
+        out.vertex_carriers.push_back({info.carrier, id});
+    }
+    // Counting sort; counted one place ahead, so that first[v] is where the tetrahedra of v begin.
+    const auto lowest = [&](TetId t) {
+        const auto& c = tets.corners(t);
+        return std::min({number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]});
+    };
+    std::vector<std::uint32_t> first(order.size() + 1, 0);
+    for (std::size_t i = 0; i < tets.slots(); ++i)
+        if (in_output(TetId{i})) ++first[lowest(TetId{i}) + 1];
+    for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+    std::vector<TetId> listed(first.back());
+    for (std::size_t i = 0; i < tets.slots(); ++i)
+        if (in_output(TetId{i})) listed[first[lowest(TetId{i})]++] = TetId{i};
+    return listed;
+}
+
 }  // namespace
 
 TetMesh extract_mesh(const ConformingMesh& mesh) {
@@ -48,29 +98,13 @@ TetMesh extract_mesh(const ConformingMesh& mesh) {
     const ValidPlc& plc = mesh.plc();
     std::vector<std::uint32_t> number(mesh.vertex_slots(), kUnused);
     const auto in_output = [&](TetId t) { return tets.is_finite(t) && mesh.in_domain(t); };
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < tets.slots(); ++i) {
-        if (!in_output(TetId{i})) continue;
-        ++count;
-        for (const VertexId v : tets.corners(TetId{i})) number[v.index()] = 0;
-    }
-    for (std::size_t v = 0; v < number.size(); ++v) {
-        if (number[v] == kUnused) continue;
-        number[v] = static_cast<std::uint32_t>(out.vertices.size());
-        out.vertices.push_back(mesh.point(VertexId{v}));
-        const VertexInfo& info = mesh.info(VertexId{v});
-        std::uint32_t id = info.carrier_id;
-        if (info.carrier == CarrierKind::input_vertex) id = plc.source_vertex[id];
-        if (info.carrier == CarrierKind::region) id = static_cast<std::uint32_t>(plc.cells[id].region);
-        out.vertex_carriers.push_back({info.carrier, id});
-    }
+    const std::vector<TetId> listed = number_output(mesh, in_output, number, out);
+    const std::size_t count = listed.size();
     out.tets.reserve(count);
     out.tet_regions.reserve(count);
     std::vector<ListedFace> faces;
     std::vector<ListedEdge> edges;
-    for (std::size_t i = 0; i < tets.slots(); ++i) {
-        const TetId t{i};
-        if (!in_output(t)) continue;
+    for (const TetId t : listed) {
         const auto& c = tets.corners(t);
         out.tets.push_back({number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]});
         out.tet_regions.push_back(plc.cells[mesh.cell(t).index()].region);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "delaunay/spatial_order.hpp"
 #include "delaunay/triangulation.hpp"
 #include "predicates/exact_range.hpp"
 #include "wellmesh/delaunay.hpp"

@@ -76,6 +76,22 @@ inline double max_cos_dihedral(const Vec3& a, const Vec3& b, const Vec3& c, cons
     return std::sqrt(std::max(worst, 0.0));
 }
 
+/// max_cos_dihedral(a, b, c, d) > cosine, up to rounding, for 0 < cosine: no division or root, and it ends with the first such angle.
+inline bool has_dihedral_below(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double cosine) {
+    const std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
+    if (!(dot(b - a, n[1]) > 0)) return true;
+    const std::array<double, 4> q{squared_norm(n[0]), squared_norm(n[1]), squared_norm(n[2]), squared_norm(n[3])};
+    // Products of two squared areas, about L^8, must neither over- nor underflow.
+    const double least = std::min({q[0], q[1], q[2], q[3]}), greatest = std::max({q[0], q[1], q[2], q[3]});
+    if (!(least > 1e-150 && greatest < 1e150)) return max_cos_dihedral(a, b, c, d) > cosine;
+    const double bound = cosine * cosine;
+    const auto below = [&](std::size_t i, std::size_t j) {
+        const double s = -dot(n[i], n[j]);
+        return s > 0 && s * s > bound * (q[i] * q[j]);
+    };
+    return below(0, 1) || below(0, 2) || below(0, 3) || below(1, 2) || below(1, 3) || below(2, 3);
+}
+
 /// Smallest dihedral angle in degrees; 0 for a flat or inverted tetrahedron.
 inline double min_dihedral_deg(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return std::acos(std::min(max_cos_dihedral(a, b, c, d), 1.0)) * (180 / std::numbers::pi);

@@ -91,7 +91,7 @@ bool Refiner::star_is_good(const Cavity& cavity, const Placement& where) const {
             // A flat tetrahedron against the carrier's own subface will lie outside.
             if (f.valid() && (where.carrier == CarrierKind::facet ? f.value() == where.carrier_id : true)) continue;
         }
-        if (max_cos_dihedral(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), cavity.point) > sliver_cosine_) return false;
+        if (has_dihedral_below(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), cavity.point, sliver_cosine_)) return false;
     }
     return true;
 }

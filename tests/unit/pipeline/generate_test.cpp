@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <thread>
@@ -54,6 +55,20 @@ TEST(GenerateOnce, SeedsAndSizes) {
             EXPECT_EQ(result.goals.size(), 3U);
             EXPECT_NEAR(result.certificate.all.mean_edge, *options.size.edge_length, 0.2 * *options.size.edge_length);
         }
+}
+
+TEST(GenerateOnce, NumberingKeepsTheInputFirstAndNeighboursClose) {
+    const Plc plc = l_block();
+    MeshOptions options;
+    options.size.edge_length = 0.05 * diagonal(plc);
+    const TetMesh mesh = generate(plc, options).mesh;
+    for (std::size_t v = 0; v < plc.vertices.size(); ++v) EXPECT_EQ(mesh.vertices[v], plc.vertices[v]);
+    double tour = 0;
+    for (std::size_t v = plc.vertices.size() + 1; v < mesh.vertices.size(); ++v) tour += distance(mesh.vertices[v - 1], mesh.vertices[v]);
+    // Along a Hilbert curve a step is about as long as an edge; in the order of insertion it is a good part of the diagonal.
+    EXPECT_LT(tour / static_cast<double>(mesh.vertices.size()), 3 * *options.size.edge_length);
+    const auto lowest = [](const auto& tet) { return *std::min_element(tet.begin(), tet.end()); };
+    EXPECT_TRUE(std::is_sorted(mesh.tets.begin(), mesh.tets.end(), [&](const auto& a, const auto& b) { return lowest(a) < lowest(b); }));
 }
 
 TEST(GenerateOnce, RegionsKeepTheirVolumesAndBounds) {

@@ -116,6 +116,28 @@ TEST(TetShape, FastAngleWorksAtAnyScale) {
     }
 }
 
+TEST(TetShape, AngleTestAgreesWithTheAngle) {
+    int below = 0;
+    for (std::uint64_t key = 0; key < 20000; ++key) {
+        const Corners p = random_tet(key);
+        const double cosine = max_cos(p);
+        for (const double bound : {std::cos(0.1), std::cos(0.35), std::cos(0.52), cosine * (1 - 1e-12), cosine * (1 + 1e-12)}) {
+            EXPECT_EQ(has_dihedral_below(p[0], p[1], p[2], p[3], bound), cosine > bound) << key << " " << bound;
+            below += cosine > bound;
+        }
+    }
+    EXPECT_GT(below, 40000);
+    for (const double scale : {1e-50, 1e-20, 1.0, 1e20, 1e50}) {
+        const Corners p{{{0, 0, 0}, {scale, 0, 0}, {0, scale, 0}, {0, 0, scale}}};
+        EXPECT_FALSE(has_dihedral_below(p[0], p[1], p[2], p[3], 0.5774)) << scale;  // 1 / sqrt(3) = 0.57735
+        EXPECT_TRUE(has_dihedral_below(p[0], p[1], p[2], p[3], 0.5773)) << scale;
+        EXPECT_TRUE(has_dihedral_below(p[1], p[0], p[2], p[3], 0.5774)) << scale;  // inverted
+    }
+    const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+    EXPECT_TRUE(has_dihedral_below(a, b, c, {std::numeric_limits<double>::quiet_NaN(), 0, 1}, 0.99));
+    EXPECT_TRUE(has_dihedral_below(a, b, c, {0.3, 0.3, 0}, 0.99));
+}
+
 TEST(TetShape, RadiusEdgeSquaredAgrees) {
     for (std::uint64_t key = 0; key < 2000; ++key) {
         const Corners p = random_tet(key);
