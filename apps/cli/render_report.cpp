@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "text_table.hpp"
 
@@ -152,9 +153,15 @@ std::string render_diagnosis(const Diagnosis& diagnosis) {
         text += "Defects: none\n";
     } else {
         TextTable table({{"severity"}, {"defect"}, {"value", Align::right}, {"where"}, {"message"}});
+        // Errors all stand here; of the rest (a triangulated surface may have an acute angle at every corner) the first ones of each kind.
+        constexpr std::size_t kMostOthers = 20;
+        std::map<DefectKind, std::size_t> others;
         for (const Defect& defect : diagnosis.defects)
-            table.add({to_string(defect.severity), to_string(defect.kind), number(defect.value), describe(defect.elements, 4), defect.message});
+            if (defect.severity == Severity::error || ++others[defect.kind] <= kMostOthers)
+                table.add({to_string(defect.severity), to_string(defect.kind), number(defect.value), describe(defect.elements, 4), defect.message});
         text += "Defects\n" + table.str();
+        for (const auto& [kind, total] : others)
+            if (total > kMostOthers) text += fmt::format("  and {} more: {}; --json FILE lists them all\n", total - kMostOthers, to_string(kind));
     }
     if (!diagnosis.cells.empty()) {
         TextTable table({{"region", Align::right}, {"meshed"}, {"volume", Align::right}, {"point inside"}});

@@ -247,9 +247,8 @@ bool BoundaryRefiner::step() {
     return false;
 }
 
-bool BoundaryRefiner::conform() {
+void BoundaryRefiner::conform() {
     while (step()) {}
-    return true;
 }
 
 void BoundaryRefiner::drain_segments() {

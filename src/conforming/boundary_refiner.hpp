@@ -35,8 +35,8 @@ public:
     /// Makes every segment a chain of edges and every facet a union of faces, then finds the cell of every tetrahedron.
     /// @throws MeshError{budget_exhausted, cancelled, unsupported_acute}
     void recover_all();
-    /// Splits until nothing is encroached; recovers what splits destroyed. @return true. @throws as recover_all does.
-    bool conform();
+    /// Splits until nothing is encroached; recovers what splits destroyed. @throws as recover_all does.
+    void conform();
     /// Splits at most one subsegment or subface. @return false if none is waiting.
     bool step();
     [[nodiscard]] bool idle() const { return segments_.empty() && faces_.empty() && !mesh_.has_broken() && !cells_stale_; }

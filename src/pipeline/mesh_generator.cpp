@@ -57,7 +57,7 @@ public:
         try {
             fill(valid);
         } catch (const MeshError& e) {
-            if (e.code() == ErrorCode::budget_exhausted && !valid.acute_features.empty() && !user_budget_spent()) throw acute_failure(valid, e);
+            if (e.code() == ErrorCode::budget_exhausted && !valid.acute_features.empty()) throw acute_failure(valid, e);
             throw;
         }
         CertifyOptions bounds;
@@ -169,13 +169,12 @@ private:
         return Termination::goals_met;
     }
 
-    [[nodiscard]] bool user_budget_spent() const { return options_.limits.time && guard_.seconds() * 1000 >= static_cast<double>(options_.limits.time->count()); }
-
-    static MeshError acute_failure(const ValidPlc& valid, const MeshError& cause) {
+    /// Names the sharpest angle, which is the likely reason, also where it was the user's limit that ended the run.
+    [[nodiscard]] MeshError acute_failure(const ValidPlc& valid, const MeshError& cause) const {
         const AcuteFeature& worst = valid.acute_features.front();
         const bool segment = worst.kind == EntityKind::segment;
         const Vec3 where = segment ? valid.vertices[valid.segments[worst.id].ends[0].index()] : valid.vertices[worst.id];
-        return {ErrorCode::unsupported_acute, cause.stage(),
+        return {guard_.user_limit_spent() ? cause.code() : ErrorCode::unsupported_acute, cause.stage(),
                 fmt::format("{}; the input has {} features at less than 90 degrees, the sharpest {:.4g} degrees at {} {} ({}, {}, {})", cause.what(),
                             valid.acute_features.size(), worst.angle_deg, to_string(worst.kind), segment ? worst.id + 1 : valid.source_vertex[worst.id] + 1, where.x,
                             where.y, where.z),
