@@ -7,6 +7,7 @@ import re
 import shutil
 import struct
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -52,18 +53,27 @@ def run(command, limit=3600.0):
                    out.read().decode(errors="replace"), err.read().decode(errors="replace").strip())
 
 
-def judge(referee, mesh, plc, min_dihedral=20.0, tolerance=None, max_radius_edge=2.0):
-    """The referee's verdict, its JSON as a dictionary; `ok` and `failures` always exist."""
-    command = [referee, mesh, "--plc", plc, "--max-radius-edge", f"{max_radius_edge:g}", "--min-dihedral", f"{float(min_dihedral):g}"]
+def judge(referee, mesh, plc, min_dihedral=20.0, tolerance=None, max_radius_edge=2.0, compare_with=None):
+    """The referee's verdict, its JSON as a dictionary; `ok` and `failures` always exist.
+
+    compare_with: the wellmesh program, whose `check` must then agree with the referee claim by claim.
+    """
+    options = ["--plc", plc, "--max-radius-edge", f"{max_radius_edge:g}", "--min-dihedral", f"{float(min_dihedral):g}"]
     if tolerance is not None:
-        command += ["--tolerance", f"{tolerance:g}"]
-    result = subprocess.run(command, capture_output=True, text=True)
+        options += ["--tolerance", f"{tolerance:g}"]
+    result = subprocess.run([referee, mesh, *options], capture_output=True, text=True)
     try:
         verdict = json.loads(result.stdout)
     except ValueError:
         return {"ok": False, "failures": [f"referee ended {result.returncode}: {result.stderr.strip()[-300:]}"]}
     verdict.setdefault("failures", [])
     verdict["ok"] = bool(verdict.get("ok")) and result.returncode == 0
+    if compare_with is not None:
+        tool = os.path.normpath(os.path.join(HERE, "..", "tools", "compare_with_referee.py"))
+        compared = subprocess.run([sys.executable, tool, compare_with, referee, mesh, *options], capture_output=True, text=True)
+        if compared.returncode != 0:
+            verdict["ok"] = False
+            verdict["failures"].append(f"wellmesh check and the referee differ: {(compared.stdout + compared.stderr).strip()[-300:]}")
     return verdict
 
 

@@ -42,6 +42,7 @@ def main():
     parser.add_argument("files", nargs="*", default=RIGHT_ANGLED)
     parser.add_argument("--models", required=True)
     parser.add_argument("--referee", required=True)
+    parser.add_argument("--compare", action="store_true", help="`wellmesh check` must agree with the referee, claim by claim")
     parser.add_argument("--program", default=DEFAULT_PROGRAM)
     parser.add_argument("--case", action="append", choices=["none", "size", "volume"])
     parser.add_argument("--min-dihedral", default="20")
@@ -74,7 +75,7 @@ def main():
                     good = False
                     continue
                 tolerance = 1e-7 if name.endswith(".stl") else None
-                verdict = judge(arguments.referee, mesh, plain_off(model, folder), arguments.min_dihedral, tolerance)
+                verdict = judge(arguments.referee, mesh, plain_off(model, folder), arguments.min_dihedral, tolerance, compare_with=arguments.program if arguments.compare else None)
                 if "quality" not in verdict:
                     print(f"{row}  {verdict['failures']}", flush=True)
                     good = False

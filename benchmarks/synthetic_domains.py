@@ -250,7 +250,8 @@ class Bench:
         cells = f"{start} {result.code:4d}"
         tolerance = transform.tolerance or 1e-9
         if report:
-            verdict = judge(self.arguments.referee, os.path.join(self.folder, "out.mesh"), model, 20, transform.tolerance)
+            verdict = judge(self.arguments.referee, os.path.join(self.folder, "out.mesh"), model, 20, transform.tolerance,
+                            compare_with=self.arguments.program if self.arguments.compare else None)
             failures += [f"referee: {f}" for f in verdict["failures"]] or ([] if verdict["ok"] else ["referee: not ok"])
             failures += volume_failures(here, verdict, tolerance)
             quality = verdict.get("quality", {}).get("all", {})
@@ -301,6 +302,7 @@ class Bench:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--referee", required=True)
+    parser.add_argument("--compare", action="store_true", help="`wellmesh check` must agree with the referee, claim by claim")
     parser.add_argument("--program", default=DEFAULT_PROGRAM)
     parser.add_argument("--tetgen", default="tetgen")
     parser.add_argument("--quick", action="store_true", help="as they are and rotated, 1k and 20k tetrahedra, one seed")
