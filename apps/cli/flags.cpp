@@ -83,6 +83,14 @@ void add_mesh_flags(CLI::App& command, MeshOptions& options) {
         ->type_name("RATIO")->capture_default_str();
     command.add_option("--min-dihedral", options.quality.min_dihedral_angle_deg, "least dihedral angle, in degrees; 0 ignores slivers")
         ->type_name("DEG")->capture_default_str();
+    command.add_option_function<std::string>(
+        "--seeding",
+        [&options](const std::string& text) {
+            if (text != "auto" && text != "off") throw CLI::ValidationError("--seeding", fmt::format("'{}' is neither auto nor off", text));
+            options.seeding = text == "auto" ? Seeding::automatic : Seeding::off;
+        },
+        "start from a lattice inside, where a size is asked for: fewer vertices for the same size")
+        ->type_name("auto|off")->default_str("auto");
     add_coplanar_tolerance_flag(command, options);
     command.add_option_function<std::string>(
         "--seed", [&options](const std::string& text) { options.seed = read_count(text, "--seed"); },

@@ -30,10 +30,14 @@ struct Limits {
     std::optional<std::chrono::milliseconds> time{};
 };
 
+/// Vertices from a body-centred cubic lattice inside, where a size is asked for: about a third fewer for the same size.
+enum class Seeding : std::uint8_t { automatic, off };
+
 struct MeshOptions {
     QualityGoals quality{};
     SizeGoals size{};
     Limits limits{};
+    Seeding seeding = Seeding::automatic;
     /// Overrides the local planarity tolerance by which facets are merged and accepted, in input units.
     std::optional<double> coplanar_tolerance{};
     /// Input, options and seed fix the output bytes (time limits and cancellation apart).

@@ -27,6 +27,7 @@ namespace wellmesh {
 enum class InsertionReason : std::uint8_t {
     input,
     recovery,          ///< a segment or facet was missing
+    lattice,           ///< seeded before refinement
     encroachment,      ///< a vertex encroached a subsegment or subface
     size,
     radius_edge,

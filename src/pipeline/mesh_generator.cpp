@@ -13,6 +13,7 @@
 #include "pipeline/extract_mesh.hpp"
 #include "pipeline/report_goals.hpp"
 #include "predicates/predicates.hpp"
+#include "refinement/lattice_seeding.hpp"
 #include "refinement/refine.hpp"
 #include "shape/improve.hpp"
 #include "validation/valid_plc.hpp"
@@ -102,6 +103,7 @@ private:
             refiner.set_sliver_cosine(std::cos(std::min(theta, kPickingAngleDeg) * (std::numbers::pi / 180)), kPickingCandidates);
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
+            if (options_.seeding == Seeding::automatic) LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
             verdict = refiner.refine();
             count();
         });

@@ -10,9 +10,9 @@
 
 namespace wellmesh {
 
-/// Circumradius bound for a target edge length h: with R <= this * h everywhere the mean edge length of a refined cube is h within
+/// Circumradius bound for a target edge length h: with R <= this * h everywhere the mean edge length of a cube, seeded or not, is h within
 /// 10 % (measured from 1k to 200k tetrahedra; tests/unit/refinement/sizing_test.cpp).
-inline constexpr double kCircumradiusPerEdgeLength = 0.74;
+inline constexpr double kCircumradiusPerEdgeLength = 0.70;
 
 /// Moving vertices may let circumradii exceed the bound by this factor (docs/decisions/0010).
 inline constexpr double kSizeTolerance = 1.2;

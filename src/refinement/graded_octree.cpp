@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinement/graded_octree.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wellmesh {
+
+GradedOctree::Box GradedOctree::box(std::uint32_t node) const {
+    const Node& n = nodes_[node];
+    const double side = std::ldexp(side_, -static_cast<int>(n.depth));
+    return {{lo_.x + n.at[0] * side, lo_.y + n.at[1] * side, lo_.z + n.at[2] * side}, side};
+}
+
+std::uint32_t GradedOctree::split(std::uint32_t leaf) {
+    const auto first = static_cast<std::uint32_t>(nodes_.size());
+    for (std::uint32_t k = 0; k < 8; ++k) {
+        const Node& parent = nodes_[leaf];
+        Node child;
+        child.at = {2 * parent.at[0] + (k & 1U), 2 * parent.at[1] + ((k >> 1) & 1U), 2 * parent.at[2] + (k >> 2)};
+        child.depth = static_cast<std::uint8_t>(parent.depth + 1);
+        child.used = parent.used;
+        nodes_.push_back(child);
+    }
+    nodes_[leaf].first_child = first;
+    return first;
+}
+
+std::uint32_t GradedOctree::find(unsigned depth, const std::array<std::uint32_t, 3>& at) const {
+    std::uint32_t node = 0;
+    while (nodes_[node].first_child != 0 && nodes_[node].depth < depth) {
+        const unsigned shift = depth - nodes_[node].depth - 1;
+        node = nodes_[node].first_child + ((at[0] >> shift) & 1U) + 2 * ((at[1] >> shift) & 1U) + 4 * ((at[2] >> shift) & 1U);
+    }
+    return node;
+}
+
+void GradedOctree::balance() {
+    std::vector<std::uint32_t> waiting;
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i)
+        if (is_leaf(i) && nodes_[i].used) waiting.push_back(i);
+    while (!waiting.empty()) {
+        const Node node = nodes_[waiting.back()];
+        const bool still_leaf = node.first_child == 0;
+        waiting.pop_back();
+        if (!still_leaf || node.depth < 2) continue;
+        const std::uint32_t cells = 1U << node.depth;
+        for (std::uint32_t k = 0; k < 27; ++k) {
+            // Unsigned wrap-around makes cells outside the root too large.
+            const std::array<std::uint32_t, 3> at{node.at[0] + k % 3 - 1, node.at[1] + k / 3 % 3 - 1, node.at[2] + k / 9 - 1};
+            if (at[0] >= cells || at[1] >= cells || at[2] >= cells) continue;
+            std::uint32_t neighbour = find(node.depth, at);
+            while (nodes_[neighbour].depth + 1 < node.depth) {
+                const std::uint32_t first = split(neighbour);
+                if (nodes_[neighbour].used)
+                    for (std::uint32_t c = 0; c < 8; ++c) waiting.push_back(first + c);
+                neighbour = find(node.depth, at);
+            }
+        }
+    }
+}
+
+std::vector<LatticePoint> GradedOctree::lattice() const {
+    // Corners as cells of the grid of the greatest depth, so that those of different leaves are told to be the same exactly.
+    struct Corner {
+        std::array<std::uint32_t, 3> at{};
+        std::uint8_t depth = 0;
+    };
+    std::vector<Corner> corners;
+    std::vector<LatticePoint> points;
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+        const Node& n = nodes_[i];
+        if (n.first_child != 0 || !n.used) continue;
+        const Box b = box(i);
+        points.push_back({{b.lo.x + b.side / 2, b.lo.y + b.side / 2, b.lo.z + b.side / 2}, b.side});
+        const unsigned shift = kMaxDepth - n.depth;
+        for (std::uint32_t k = 0; k < 8; ++k)
+            corners.push_back({{(n.at[0] + (k & 1U)) << shift, (n.at[1] + ((k >> 1) & 1U)) << shift, (n.at[2] + (k >> 2)) << shift}, n.depth});
+    }
+    std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at != b.at ? a.at < b.at : a.depth > b.depth; });
+    const double unit = std::ldexp(side_, -static_cast<int>(kMaxDepth));
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (i > 0 && corners[i].at == corners[i - 1].at) continue;
+        const auto& at = corners[i].at;
+        points.push_back({{lo_.x + at[0] * unit, lo_.y + at[1] * unit, lo_.z + at[2] * unit}, std::ldexp(side_, -static_cast<int>(corners[i].depth))});
+    }
+    return points;
+}
+
+}  // namespace wellmesh

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A balanced octree whose leaves follow a size field, and the body-centred cubic lattice on it: corners and centres of its leaves.
+//
+// Where leaves are equal this is the bcc lattice, which covers space with the fewest circumspheres: all its Delaunay tetrahedra are alike,
+// with dihedral angles of 60 and 90 degrees and circumradius sqrt(5)/4 of the lattice constant, and it is generic, so that small changes
+// far away change nothing. Leaves that share a corner differ by at most one level [Labelle06].
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "wellmesh/vec3.hpp"
+
+namespace wellmesh {
+
+struct LatticePoint {
+    Vec3 point{};
+    double spacing = 0;  ///< lattice constant at this place: side of the (smallest) leaf that it belongs to
+};
+
+class GradedOctree {
+public:
+    static constexpr unsigned kMaxDepth = 20;
+
+    struct Box {
+        Vec3 lo{};
+        double side = 0;
+    };
+
+    /// @param lo, side  the root cube
+    GradedOctree(const Vec3& lo, double side) : lo_(lo), side_(side) { nodes_.push_back({}); }
+
+    [[nodiscard]] std::size_t size() const { return nodes_.size(); }
+    [[nodiscard]] bool is_leaf(std::uint32_t node) const { return nodes_[node].first_child == 0; }
+    [[nodiscard]] unsigned depth(std::uint32_t node) const { return nodes_[node].depth; }
+    [[nodiscard]] Box box(std::uint32_t node) const;
+    /// Splits a leaf. @return its first child; the other seven follow. @pre depth(leaf) < kMaxDepth
+    std::uint32_t split(std::uint32_t leaf);
+    /// Only used leaves have lattice points.
+    void use(std::uint32_t leaf) { nodes_[leaf].used = true; }
+    /// Splits leaves until those that share a corner with a used one differ from it by at most one level.
+    void balance();
+    /// Corners and centres of the used leaves, each once, in an order that depends on the tree alone.
+    [[nodiscard]] std::vector<LatticePoint> lattice() const;
+
+private:
+    struct Node {
+        std::array<std::uint32_t, 3> at{};  // in units of the node's own side
+        std::uint32_t first_child = 0;
+        std::uint8_t depth = 0;
+        bool used = false;
+    };
+    /// The leaf, or the node of that depth, that holds cell `at` of the grid of this depth.
+    [[nodiscard]] std::uint32_t find(unsigned depth, const std::array<std::uint32_t, 3>& at) const;
+
+    Vec3 lo_;
+    double side_;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace wellmesh

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinement/lattice_seeding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "conforming/place_point.hpp"
+#include "core/rng.hpp"
+#include "core/vec3_math.hpp"
+#include "delaunay/spatial_order.hpp"
+
+namespace wellmesh {
+namespace {
+
+/// Circumradius of the tetrahedra of the bcc lattice, over the lattice constant.
+const double kLatticeCircumradius = std::sqrt(5.0) / 4;
+/// The lattice's circumradii over the bound: at 1 the jitter makes every second one too large, and below 0.95 vertices are wasted (docs/decisions/0011).
+constexpr double kLatticeScale = 0.95;
+/// Vertices keep so far from the boundary, in circumradius bounds.
+constexpr double kClearance = 0.5;
+/// Of the lattice constant: takes exact symmetry away, costs nothing in shape.
+constexpr double kLatticeJitter = 1e-4;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Squared distance from p to the triangle: to its plane if the foot of the perpendicular lies inside, else to the nearest edge.
+double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 n = cross(b - a, c - a);
+    if (dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0) {
+        const double height = dot(p - a, n);
+        return height * height / squared_norm(n);
+    }
+    const auto to_edge = [&p](const Vec3& u, const Vec3& v) {
+        const Vec3 d = v - u;
+        const double t = std::clamp(dot(p - u, d) / squared_norm(d), 0.0, 1.0);
+        return squared_distance(p, u + t * d);
+    };
+    return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+}
+
+}  // namespace
+
+LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const std::vector<CellSize>& sizes)
+    : mesh_(mesh), boundary_(boundary), guard_(guard), radius_(sizes.size(), kInfinity), spacing_(sizes.size(), kInfinity) {
+    for (std::size_t c = 0; c < sizes.size(); ++c) {
+        if (!mesh.is_filled(CellId{c})) continue;
+        // Twelve tetrahedra share the lattice's cube.
+        const double by_volume = std::cbrt(12 * sizes[c].max_volume);
+        radius_[c] = std::min(std::sqrt(sizes[c].max_squared_circumradius), kLatticeCircumradius * by_volume);
+        spacing_[c] = kLatticeScale * radius_[c] / kLatticeCircumradius;
+    }
+}
+
+double LatticeSeeder::radius_bound(TetId t) const {
+    return mesh_.tets().is_finite(t) && mesh_.in_domain(t) ? radius_[mesh_.cell(t).index()] : kInfinity;
+}
+
+/// Circumspheres of tetrahedra at a subsegment or subface are at least as large as its own: splitting it is never in vain.
+void LatticeSeeder::split_boundary(double coarseness) {
+    const TetStore& tets = mesh_.tets();
+    std::vector<Subsegment> segments;
+    std::vector<Subface> faces;
+    do {
+        segments.clear();
+        faces.clear();
+        for (std::size_t i = 0; i < tets.slots(); ++i) {
+            const TetId t{i};
+            if (!tets.is_finite(t) || !mesh_.has_labels(t)) continue;
+            const double bound = coarseness * radius_bound(t);
+            if (bound == kInfinity) continue;
+            const TetLabels& l = mesh_.labels(t);
+            const auto& c = tets.corners(t);
+            for (unsigned e = 0; e < 6; ++e) {
+                const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
+                if (l.segments[e].valid() && distance(mesh_.point(a), mesh_.point(b)) > 2 * bound) segments.push_back({std::min(a, b), std::max(a, b), l.segments[e]});
+            }
+            for (unsigned f = 0; f < 4; ++f) {
+                if (!l.facets[f].valid()) continue;
+                const auto fc = tets.face_corners(TetFace{t, f});
+                double radius = 0;
+                circumcentre(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), &radius);
+                if (radius > bound) faces.push_back({fc, l.facets[f]});
+            }
+        }
+        const SplitRequest request{InsertionReason::boundary_by_size, VertexId{}};
+        for (const Subsegment& s : segments)
+            if (mesh_.find_subsegment(s).valid()) boundary_.split(s, request);
+        boundary_.conform();
+        if (!segments.empty()) continue;  // facets once their outlines are done
+        for (const Subface& s : faces) {
+            boundary_.split(s, request);
+            boundary_.conform();
+        }
+    } while (!segments.empty() || !faces.empty());
+}
+
+std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
+    const TetStore& tets = mesh_.tets();
+    std::vector<Face> out;
+    for (std::size_t i = 0; i < tets.slots(); ++i) {
+        const TetId t{i};
+        if (!tets.is_finite(t) || !mesh_.has_labels(t)) continue;
+        const double spacing = mesh_.in_domain(t) ? spacing_[mesh_.cell(t).index()] : kInfinity;
+        if (spacing == kInfinity) continue;
+        for (unsigned f = 0; f < 4; ++f) {
+            if (!mesh_.labels(t).facets[f].valid()) continue;
+            const auto fc = tets.face_corners(TetFace{t, f});
+            const Vec3 &a = mesh_.point(fc[0]), &b = mesh_.point(fc[1]), &c = mesh_.point(fc[2]);
+            out.push_back({{Vec3{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
+                            Vec3{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}},
+                           spacing});
+        }
+    }
+    return out;
+}
+
+/// Splits until leaves are no larger than the lattice constants of the cells that they meet.
+void LatticeSeeder::build(GradedOctree& tree, std::uint32_t node, const std::vector<std::uint32_t>& faces, TetId near) {
+    const GradedOctree::Box box = tree.box(node);
+    const Vec3 hi{box.lo.x + box.side, box.lo.y + box.side, box.lo.z + box.side};
+    std::vector<std::uint32_t> here;
+    double spacing = kInfinity;
+    for (const std::uint32_t f : faces) {
+        const auto& [low, high] = faces_[f].box;
+        if (low.x > hi.x || low.y > hi.y || low.z > hi.z || high.x < box.lo.x || high.y < box.lo.y || high.z < box.lo.z) continue;
+        here.push_back(f);
+        spacing = std::min(spacing, faces_[f].spacing);
+    }
+    const TetId at_centre = mesh_.triangulation().locate(0.5 * (box.lo + hi), near);
+    if (mesh_.tets().is_finite(at_centre) && mesh_.in_domain(at_centre)) spacing = std::min(spacing, spacing_[mesh_.cell(at_centre).index()]);
+    if (spacing == kInfinity) return;
+    if (box.side <= spacing * (1 + 1e-9) || tree.depth(node) == GradedOctree::kMaxDepth) return tree.use(node);
+    const std::uint32_t first = tree.split(node);
+    for (std::uint32_t k = 0; k < 8; ++k) build(tree, first + k, here, at_centre);
+}
+
+bool LatticeSeeder::is_clear(const Vec3& p, double clearance) const {
+    for (const TetId t : cavity_.tets) {
+        if (!mesh_.has_labels(t)) continue;
+        for (unsigned f = 0; f < 4; ++f) {
+            if (!mesh_.labels(t).facets[f].valid()) continue;
+            const auto fc = mesh_.tets().face_corners(TetFace{t, f});
+            if (squared_distance_to_triangle(p, mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2])) < clearance * clearance) return false;
+        }
+    }
+    return true;
+}
+
+std::uint64_t LatticeSeeder::seed() {
+    // The lattice constant of the cell that will have most vertices is realised exactly, the others' up to a power of two.
+    double base = kInfinity, most = 0;
+    for (std::size_t c = 0; c < spacing_.size(); ++c) {
+        if (spacing_[c] == kInfinity) continue;
+        const double expected = mesh_.plc().cells[c].volume / (spacing_[c] * spacing_[c] * spacing_[c]);
+        if (expected > most) {
+            most = expected;
+            base = spacing_[c];
+        }
+    }
+    if (base == kInfinity) return 0;
+    // From coarse to fine: vertices on an empty domain's boundary would all be neighbours of each other.
+    constexpr double kCoarsest = 8;
+    split_boundary(kCoarsest);
+    const std::vector<LatticePoint> lattice = find_lattice(base);
+    std::vector<Vec3> points;
+    points.reserve(lattice.size());
+    for (const LatticePoint& p : lattice) points.push_back(p.point);
+    const std::vector<std::uint32_t> order = biased_spatial_order(points);
+    std::vector<char> waits(lattice.size(), 1);
+    std::uint64_t inserted = 0;
+    for (double coarseness = kCoarsest; coarseness >= 1; coarseness /= 2) {
+        split_boundary(coarseness);
+        // As many as the coarse mesh would have.
+        const auto share = static_cast<std::size_t>(static_cast<double>(order.size()) / (coarseness * coarseness * coarseness));
+        TetId near{};
+        for (std::size_t k = 0; k < share; ++k) {
+            const std::uint32_t i = order[k];
+            if (waits[i] == 0) continue;
+            if (guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), order.size() - inserted) != RunGuard::Verdict::go_on) return inserted;
+            const std::uint64_t key = mix64(boundary_.seed(), i);
+            const Outcome outcome = insert(flush_to_exact_range(points[i] + (kLatticeJitter * lattice[i].spacing) * picking_point(3, key, 1)), near);
+            if (outcome != Outcome::encroaches) waits[i] = 0;  // finer boundaries are encroached by fewer
+            inserted += outcome == Outcome::inserted;
+        }
+    }
+    return inserted;
+}
+
+std::vector<LatticePoint> LatticeSeeder::find_lattice(double base) {
+    Vec3 lo, hi;
+    bounding_box(mesh_.plc().vertices, lo, hi);
+    const double extent = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
+    double side = base;
+    while (side < extent) side *= 2;
+    GradedOctree tree(0.5 * (lo + hi) - 0.5 * Vec3{side, side, side}, side);
+    faces_ = list_faces();
+    std::vector<std::uint32_t> all(faces_.size());
+    std::iota(all.begin(), all.end(), 0U);
+    build(tree, 0, all, TetId{});
+    tree.balance();
+    return tree.lattice();
+}
+
+LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near) {
+    Triangulation& tri = mesh_.triangulation();
+    near = tri.locate(p, near);
+    const CellId cell = mesh_.cell(near);
+    if (!mesh_.tets().is_finite(near) || !mesh_.in_domain(near) || spacing_[cell.index()] == kInfinity) return Outcome::refused;
+    if (!tri.find_conflict_cavity(p, near, cavity_)) return Outcome::refused;
+    const Placement where = Placement::in_cell(cell);
+    if (!is_clear(p, kClearance * radius_[cell.index()])) return Outcome::refused;
+    boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+    if (!encroached_segments_.empty() || !encroached_faces_.empty()) return Outcome::encroaches;
+    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::region, InsertionReason::lattice, cell.value(), VertexId{}, 0});
+    near = tri.tet_of(v);
+    double shortest = kInfinity;
+    for (const TetId t : tri.new_tets())
+        for (const VertexId w : mesh_.tets().corners(t))
+            if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
+    mesh_.info(v).insertion_length = std::sqrt(shortest);
+    return Outcome::inserted;
+}
+
+}  // namespace wellmesh
