@@ -17,7 +17,7 @@ enum class Severity { note, warning, error };
 enum class DefectKind {
     non_finite_coordinate, coordinate_range, bad_index, degenerate_facet, duplicate_vertex, duplicate_facet, isolated_vertex,
     self_intersection, open_edge, inconsistent_orientation, non_planar_facet, feature_too_thin, no_cell, seed_outside, seed_on_facet,
-    seed_conflict, acute_segment_angle, acute_dihedral_angle, empty_input
+    seed_conflict, outside_domain, acute_segment_angle, acute_dihedral_angle, empty_input
 };
 [[nodiscard]] const char* to_string(DefectKind kind) noexcept;
 

@@ -27,7 +27,7 @@ constexpr std::array<std::array<const char*, 2>, 8> kStatements{{
     {"plc_vertices", "Every vertex of a facet of the PLC is a vertex of the mesh."},
     {"plc_segments", "Every segment of the PLC is a chain of mesh edges."},
     {"plc_isolated_vertices", "Every vertex of the PLC that is on no facet is a vertex of the mesh."},
-    {"plc_filled", "No facet of the PLC lies outside the mesh."},
+    {"plc_filled", "No facet of the PLC that bounds a cell lies outside the mesh."},
     {"holes_empty", "No hole seed lies inside the mesh."},
     {"region_volumes", "Every region has the volume of its cells of the PLC."},
 }};
@@ -58,13 +58,18 @@ class PlcComparison {
 public:
     PlcComparison(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, const PlcSurface& surface)
         : mesh_(mesh), constraints_(triangles), surface_(surface), tolerance_(options.tolerance * surface.diagonal), relative_tolerance_(options.tolerance) {
-        std::vector<Corners> all, hull;
+        std::vector<Corners> all, hull, separating;
         all.reserve(triangles.size());
-        for (const ConstraintTriangle& t : triangles) {
+        for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+            const ConstraintTriangle& t = triangles[i];
             all.push_back({mesh.point(t.v[0]), mesh.point(t.v[1]), mesh.point(t.v[2])});
             if (t.on_hull) hull.push_back(all.back());
+            if (!t.is_face || (!t.on_hull && mesh.region(t.tets[0]) == mesh.region(t.tets[1]))) continue;
+            separating.push_back(all.back());
+            separating_.push_back(i);
         }
         covered_ = TriangleTree(std::move(all));
+        separators_ = TriangleTree(std::move(separating));
         hull_ = TriangleTree(std::move(hull));
         facet_wanted_.assign(surface.facets.empty() ? 0 : surface.facets.back() + std::size_t{1}, false);
         for (std::size_t i = 0; i < surface.facets.size(); ++i) {
@@ -151,7 +156,7 @@ public:
         claim.checked(surface_.facets.size());
         if (!plc.hole_seeds.empty() || plc.fill != FillRule::bounded_cells) return claim.undecided("cells may have been left out on purpose");
         for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-            if (triangles_[i] != Part::outside) continue;
+            if (triangles_[i] != Part::outside || surface_.dangling[i]) continue;
             const Vec3 where = centroid_of(surface_.triangles.triangles()[i]);
             claim.violated(EntityKind::facet, surface_.facets[i] + std::uint64_t{1}, where, [&] { return fmt::format("facet {} is outside at {}", surface_.facets[i] + 1, text_of(where)); });
         }
@@ -188,7 +193,8 @@ private:
     const std::vector<ConstraintTriangle>& constraints_;
     const PlcSurface& surface_;
     double tolerance_, relative_tolerance_;
-    TriangleTree covered_, hull_;
+    TriangleTree covered_, hull_, separators_;
+    std::vector<std::uint32_t> separating_;  ///< of each triangle of separators_, the constraint: on the hull or between two regions
     std::vector<Part> triangles_;
     std::vector<bool> facet_wanted_;  ///< some triangle of it is not outside the mesh; facets without triangles may be beyond the end
 };
@@ -273,12 +279,11 @@ Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
     std::uint32_t hint = 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const Corners& t = triangles[i];
-        const auto nearest = covered_.nearest(centroid_of(t), hint);
+        const auto nearest = separators_.nearest(centroid_of(t), hint);
         hint = nearest.triangle;
-        if (nearest.distance > tolerance_) continue;  // not a boundary of what is meshed; plc_area says so if it is inside
-        const ConstraintTriangle& c = constraints_[nearest.triangle];
-        if (!c.is_face) continue;
-        const auto& [p, q, r] = covered_.triangles()[nearest.triangle];
+        if (nearest.distance > tolerance_) continue;  // between no two regions; plc_area says so if it is inside and not covered
+        const ConstraintTriangle& c = constraints_[separating_[nearest.triangle]];
+        const auto& [p, q, r] = separators_.triangles()[nearest.triangle];
         const bool same_way = dot(cross(q - p, r - p), cross(t[1] - t[0], t[2] - t[0])) > 0;
         using LongVec = std::array<long double, 3>;
         const auto from_origin = [&](const Vec3& x) {

@@ -108,6 +108,80 @@ void collect_vertices(const Plc& plc, const Places& places, PlcSurface& surface)
         if (places.of(v) == v) (used[v] ? surface.facet_vertices : surface.other_vertices).push_back(v);
 }
 
+/// Facets of which an earlier one has the same polygons: shared walls of solids that touch are listed twice, and are one facet.
+std::vector<bool> find_repetitions(const Plc& plc, const Places& places) {
+    using Outline = std::vector<std::uint32_t>;
+    std::vector<std::pair<std::vector<Outline>, std::uint32_t>> outlines;
+    for (std::uint32_t f = 0; f < plc.facets.size(); ++f) {
+        std::vector<Outline> polygons;
+        for (const auto& polygon : plc.facets[f].polygons) {
+            // The same from whatever corner and in whichever direction it is listed.
+            Outline forward;
+            for (const std::uint32_t v : polygon) forward.push_back(places.of(v));
+            std::rotate(forward.begin(), std::min_element(forward.begin(), forward.end()), forward.end());
+            Outline backward(forward.rbegin(), forward.rend());
+            std::rotate(backward.begin(), std::min_element(backward.begin(), backward.end()), backward.end());
+            polygons.push_back(std::min(forward, backward));
+        }
+        std::sort(polygons.begin(), polygons.end());
+        outlines.emplace_back(std::move(polygons), f);
+    }
+    std::sort(outlines.begin(), outlines.end());
+    std::vector<bool> repeated(plc.facets.size(), false);
+    for (std::size_t i = 1; i < outlines.size(); ++i)
+        if (outlines[i].first == outlines[i - 1].first && plc.facets[outlines[i].second].holes.size() == plc.facets[outlines[i - 1].second].holes.size())
+            repeated[outlines[i].second] = true;
+    return repeated;
+}
+
+/// Triangles that bound no cell: fins, flaps and free sheets. One with an edge that no other triangle has is such a one; without it, so may
+/// be its neighbours.
+std::vector<bool> find_dangling(const std::vector<Corners>& triangles) {
+    struct Use {
+        std::array<double, 6> edge;
+        std::uint32_t triangle;
+    };
+    const auto key = [](const Vec3& a, const Vec3& b) {
+        const bool order = lexicographically_less(a, b);
+        const Vec3 &p = order ? a : b, &q = order ? b : a;
+        return std::array<double, 6>{p.x + 0.0, p.y + 0.0, p.z + 0.0, q.x + 0.0, q.y + 0.0, q.z + 0.0};  // -0 + 0 is 0
+    };
+    std::vector<Use> uses;
+    uses.reserve(3 * triangles.size());
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) uses.push_back({key(triangles[t][k], triangles[t][(k + 1) % 3]), t});
+    std::sort(uses.begin(), uses.end(), [](const Use& u, const Use& v) { return std::tie(u.edge, u.triangle) < std::tie(v.edge, v.triangle); });
+    std::vector<std::uint32_t> edge_of(uses.size()), left;
+    std::vector<std::array<std::uint32_t, 3>> edges(triangles.size());
+    std::vector<std::size_t> filled(triangles.size(), 0), first;
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        if (i == 0 || uses[i].edge != uses[i - 1].edge) {
+            left.push_back(0);
+            first.push_back(i);
+        }
+        edge_of[i] = static_cast<std::uint32_t>(left.size() - 1);
+        ++left.back();
+        edges[uses[i].triangle][filled[uses[i].triangle]++] = edge_of[i];
+    }
+    first.push_back(uses.size());
+    std::vector<bool> dangling(triangles.size(), false);
+    std::vector<std::uint32_t> waiting;
+    for (std::uint32_t e = 0; e < left.size(); ++e)
+        if (left[e] == 1) waiting.push_back(e);
+    while (!waiting.empty()) {
+        const std::uint32_t e = waiting.back();
+        waiting.pop_back();
+        for (std::size_t i = first[e]; i < first[e + 1]; ++i) {
+            const std::uint32_t t = uses[i].triangle;
+            if (dangling[t]) continue;
+            dangling[t] = true;
+            for (const std::uint32_t other : edges[t])
+                if (--left[other] == 1) waiting.push_back(other);
+        }
+    }
+    return dangling;
+}
+
 void collect_edges(const Plc& plc, const Places& places, double flat_angle, double bend_tolerance, PlcSurface& surface) {
     const EdgeSelection selection(surface, places, flat_angle, bend_tolerance);
     struct Use {
@@ -119,9 +193,11 @@ void collect_edges(const Plc& plc, const Places& places, double flat_angle, doub
         const auto [low, high] = std::minmax({places.of(a), places.of(b)});
         if (low != high) uses.push_back({low, high, facet});
     };
+    std::vector<bool> has_area(plc.facets.size(), false);
+    for (const std::uint32_t f : surface.facets) has_area[f] = true;
     for (std::uint32_t f = 0; f < plc.facets.size(); ++f)
         for (const auto& polygon : plc.facets[f].polygons)
-            for (std::size_t i = 0; i < polygon.size(); ++i) add(polygon[i], polygon[(i + 1) % polygon.size()], f);
+            for (std::size_t i = 0; has_area[f] && i < polygon.size(); ++i) add(polygon[i], polygon[(i + 1) % polygon.size()], f);
     std::erase_if(uses, [&](const Use& e) { return !selection.wanted(e.a, e.b); });
     for (const PlcSegment& s : plc.segments) add(s.vertices[0], s.vertices[1], kNone);
     std::sort(uses.begin(), uses.end());
@@ -138,20 +214,23 @@ PlcReading read_surface(const Plc& plc, double flat_angle, double relative_toler
     PlcSurface surface;
     surface.points = plc.vertices;
     for (Vec3& p : surface.points) p = flush_to_exact_range(p);
+    const Places places(surface.points);
+    const std::vector<bool> repeated = find_repetitions(plc, places);
     std::vector<Corners> triangles;
     for (std::uint32_t f = 0; f < plc.facets.size(); ++f) {
+        if (repeated[f]) continue;
         const std::optional<std::vector<Corners>> cover = triangulate_facet(surface.points, plc.facets[f]);
         if (!cover) return {std::nullopt, fmt::format("the edges of facet {} of the PLC cross each other too often", f + 1)};
         triangles.insert(triangles.end(), cover->begin(), cover->end());
         surface.facets.resize(triangles.size(), f);
     }
     if (triangles.empty()) return {std::nullopt, "the PLC has no facet with an area"};
+    surface.dangling = find_dangling(triangles);
     surface.triangles = TriangleTree(std::move(triangles));
     const Box3 box = Box3::of(surface.points.data(), surface.points.size());
     surface.diagonal = norm(box.high - box.low);
     double largest = 0;
     for (const Vec3& p : surface.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    const Places places(surface.points);
     collect_vertices(plc, places, surface);
     // Three kinds of fuzz: rounding of doubles, rounding before they became doubles (two triangles, a few coordinates each), and what the
     // caller tolerates as the distance between a mesh and the PLC.

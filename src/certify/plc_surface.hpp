@@ -19,10 +19,11 @@ struct PlcEdge {
 
 struct PlcSurface {
     std::vector<Vec3> points;                ///< the PLC's vertices; coordinates too small for exact predicates became zero
-    TriangleTree triangles;                  ///< cover the facets
+    TriangleTree triangles;                  ///< cover the facets, repeated ones once
+    std::vector<bool> dangling;              ///< of each triangle, whether it bounds no cell whatever is filled: part of a fin, flap or free sheet
     std::vector<std::uint32_t> facets;       ///< of each triangle, its facet
     std::vector<std::uint32_t> facet_vertices, other_vertices;  ///< used by facets; by none. Of vertices at one place, the first
-    /// Edges that a conforming mesh must have: entries of Plc::segments, and polygon edges, except those at which exactly two triangles, of
+    /// Edges that a conforming mesh must have: entries of Plc::segments, and polygon edges of facets with an area, except those at which exactly two triangles, of
     /// different facets, are flat together: a mesher may have merged the two.
     std::vector<PlcEdge> edges;
     double diagonal = 0;                     ///< of the bounding box of all vertices

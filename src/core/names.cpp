@@ -70,6 +70,7 @@ const char* to_string(DefectKind kind) noexcept {
         case DefectKind::duplicate_vertex: return "duplicate_vertex";
         case DefectKind::duplicate_facet: return "duplicate_facet";
         case DefectKind::isolated_vertex: return "isolated_vertex";
+        case DefectKind::outside_domain: return "outside_domain";
         case DefectKind::self_intersection: return "self_intersection";
         case DefectKind::open_edge: return "open_edge";
         case DefectKind::inconsistent_orientation: return "inconsistent_orientation";

@@ -71,12 +71,7 @@ public:
         result_.statistics.certificate_tolerance = bounds.tolerance;
         result_.statistics.certificate_flat_angle_rad = bounds.flat_angle_rad;
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
-        try {
-            fail_if_refuted(valid);
-        } catch (const MeshError& e) {
-            if (!valid.acute_features.empty()) throw acute_failure(valid, e);
-            throw;
-        }
+        fail_if_refuted();
         report_goals(result_, options_, valid);
         result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
         return std::move(result_);
@@ -129,13 +124,10 @@ private:
     }
 
     /// Delaunay, conforming and Gabriel hold or the run fails; shape and size are asked and achieved instead.
-    void fail_if_refuted(const ValidPlc& valid) const {
-        // Where validation closed degenerate facets, the edges of the file are no longer all edges of the complex.
-        const auto& defects = valid.diagnosis.defects;
-        const bool closed = std::any_of(defects.begin(), defects.end(), [](const Defect& d) { return d.kind == DefectKind::degenerate_facet; });
+    void fail_if_refuted() const {
         for (const Claim& claim : result_.certificate.claims) {
             const bool goal = claim.name == "radius_edge" || claim.name == "dihedral" || claim.name == "aspect_ratio" || claim.name == "sigma" || claim.name == "max_volume";
-            if (goal || claim.state != Claim::State::refuted || (closed && claim.name == "plc_segments")) continue;
+            if (goal || claim.state != Claim::State::refuted) continue;
             std::vector<ElementRef> offenders;
             if (claim.witness) offenders.push_back(*claim.witness);
             throw MeshError(ErrorCode::internal_invariant, Stage::certify,

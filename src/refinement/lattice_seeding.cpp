@@ -20,6 +20,9 @@ const double kLatticeCircumradius = std::sqrt(5.0) / 4;
 constexpr double kLatticeScale = 0.95;
 /// Vertices keep so far from the boundary, in circumradius bounds.
 constexpr double kClearance = 0.5;
+/// Volume over surface, in lattice constants, from which on a cell is seeded: a plate two layers thick, a cube of six. In thinner ones the gap
+/// between lattice and boundary costs as many vertices as the lattice saves.
+constexpr double kLeastThickness = 1;
 /// Of the lattice constant: takes exact symmetry away, costs nothing in shape.
 constexpr double kLatticeJitter = 1e-4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -43,12 +46,23 @@ double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
 
 LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const std::vector<CellSize>& sizes)
     : mesh_(mesh), boundary_(boundary), guard_(guard), radius_(sizes.size(), kInfinity), spacing_(sizes.size(), kInfinity) {
+    std::vector<double> surface(sizes.size(), 0);
+    for (const ValidFacet& f : mesh.plc().facets) {
+        double area = 0;
+        for (const auto& t : f.triangles) {
+            const Vec3 &a = mesh.plc().vertices[t[0].index()], &b = mesh.plc().vertices[t[1].index()], &c = mesh.plc().vertices[t[2].index()];
+            area += norm(cross(b - a, c - a)) / 2;
+        }
+        for (const CellId c : f.cells) surface[c.index()] += area;
+    }
     for (std::size_t c = 0; c < sizes.size(); ++c) {
         if (!mesh.is_filled(CellId{c})) continue;
         // Twelve tetrahedra share the lattice's cube.
         const double by_volume = std::cbrt(12 * sizes[c].max_volume);
         radius_[c] = std::min(std::sqrt(sizes[c].max_squared_circumradius), kLatticeCircumradius * by_volume);
-        spacing_[c] = kLatticeScale * radius_[c] / kLatticeCircumradius;
+        const double spacing = kLatticeScale * radius_[c] / kLatticeCircumradius;
+        if (mesh.plc().cells[c].volume >= kLeastThickness * spacing * surface[c]) spacing_[c] = spacing;
+        else radius_[c] = kInfinity;
     }
 }
 

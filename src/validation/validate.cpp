@@ -34,6 +34,7 @@ struct ValidPlcBuilder {
     void set_triangles(std::uint32_t group, ValidFacet& facet);
     void find_open_edges();
     void attach_cells(const CellMap& map);
+    void drop_outside(const LineQuery& lines, const CellMap& map);
     void keep_isolated_vertices(const LineQuery& lines, const CellMap& map);
     void compress_vertices();
     void summarise();
@@ -70,6 +71,8 @@ void ValidPlcBuilder::run() {
     const CellMap map = find_cells(input.points, soup.triangles, edges, lines);
     out.cells = fill_cells(input, soup, map, lines, report);
     attach_cells(map);
+    if (report.has_errors()) return;
+    drop_outside(lines, map);
     keep_isolated_vertices(lines, map);
     compress_vertices();
     out.acute_features = find_sharp_features(out, rounding, report);
@@ -161,6 +164,53 @@ void ValidPlcBuilder::attach_cells(const CellMap& map) {
         const std::uint32_t turned = groups.is_turned[t] ? 1 : 0;
         out.facets[g].cells = {CellId{map.cell_of_side[2 * t + turned]}, CellId{map.cell_of_side[2 * t + 1 - turned]}};
     }
+}
+
+/// What touches no filled cell can't be part of a mesh of the domain: fins on the outside, sheets and segments in holes or elsewhere.
+void ValidPlcBuilder::drop_outside(const LineQuery& lines, const CellMap& map) {
+    std::vector<ElementRef> facets_dropped, segments_dropped;
+    std::vector<FacetId> number(out.facets.size());
+    std::vector<ValidFacet> kept;
+    for (std::size_t f = 0; f < out.facets.size(); ++f) {
+        ValidFacet& facet = out.facets[f];
+        if (std::any_of(facet.cells.begin(), facet.cells.end(), [&](CellId c) { return out.cells[c.index()].filled; })) {
+            number[f] = FacetId{kept.size()};
+            kept.push_back(std::move(facet));
+        } else {
+            facets_dropped.push_back(report.facet(facet.source_facet, input.points[facet.triangles.front()[0].index()]));
+        }
+    }
+    out.facets = std::move(kept);
+    std::vector<SegmentId> segment_number(out.segments.size());
+    std::vector<ValidSegment> segments;
+    for (std::size_t s = 0; s < out.segments.size(); ++s) {
+        ValidSegment& segment = out.segments[s];
+        const bool had_facets = !segment.facets.empty();
+        for (FacetId& f : segment.facets) f = number[f.index()];
+        std::erase_if(segment.facets, [](FacetId f) { return !f.valid(); });
+        bool keep = !segment.facets.empty();
+        const Vec3 &a = input.points[segment.ends[0].index()], &b = input.points[segment.ends[1].index()], middle = a + 0.5 * (b - a);
+        if (!keep && !had_facets) {  // a segment of its own crosses no facet, so its middle tells
+            const auto place = lines.locate(middle);
+            keep = place.on || (place.sees && out.cells[map.cell_of_side[*place.sees]].filled);
+            if (!keep) segments_dropped.push_back(report.vertex(input.source_vertex[segment.ends[0].index()]));
+        }
+        if (!keep) continue;
+        segment_number[s] = SegmentId{segments.size()};
+        segments.push_back(std::move(segment));
+    }
+    out.segments = std::move(segments);
+    for (ValidFacet& f : out.facets)
+        for (SegmentId& s : f.segments) s = segment_number[s.index()];
+    const auto tell = [&](std::vector<ElementRef>&& dropped, const char* what) {
+        if (dropped.empty()) return;
+        const auto n = static_cast<double>(dropped.size());
+        const std::string place = dropped.front().where ? format_point(*dropped.front().where) : std::string("?");
+        report.add(DefectKind::outside_domain, Severity::warning, std::move(dropped),
+                   fmt::format("{} {} of the input, the first at {}, touch no filled cell and were dropped: they can't be part of a mesh of the domain", n, what, place), n);
+    };
+    tell(std::move(facets_dropped), "facets");
+    tell(std::move(segments_dropped), "segments");
 }
 
 /// A surface file must be closed: an edge with one triangle is a hole in it. Facets of a .poly may dangle.
