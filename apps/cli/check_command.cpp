@@ -23,7 +23,7 @@ struct CheckCommand {
     CertifyOptions options;
 };
 
-int run(const CheckCommand& arguments) {
+int run(const CheckCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.options);
     require_report(arguments.json, {arguments.mesh, arguments.plc});
     const TetMesh mesh = read_mesh(arguments.mesh);
@@ -40,6 +40,7 @@ int run(const CheckCommand& arguments) {
         json["vertices"] = mesh.vertices.size();
         json["tets"] = mesh.tets.size();
         json["certificate"] = to_json(certificate);
+        const Interrupt::Cooperative cooperative(interrupt);  // a file once begun is finished
         write_json(arguments.json, json);
     }
     if (!arguments.quiet)
@@ -57,7 +58,7 @@ void add_check_command(CLI::App& program, Command& selected) {
     add_certify_flags(command, arguments->options);
     add_json_flag(command, arguments->json);
     command.add_flag("--quiet", arguments->quiet, "no report; the exit status says it: 0 no claim refuted, 1 otherwise");
-    command.callback([&selected, arguments] { selected = [arguments](Interrupt&) { return run(*arguments); }; });
+    command.callback([&selected, arguments] { selected = [arguments](Interrupt& interrupt) { return run(*arguments, interrupt); }; });
 }
 
 }  // namespace wellmesh::cli

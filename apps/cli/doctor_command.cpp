@@ -22,7 +22,7 @@ struct DoctorCommand {
     MeshOptions options;
 };
 
-int run(const DoctorCommand& arguments) {
+int run(const DoctorCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.options);
     require_report(arguments.json, {arguments.input});
     const Diagnosis diagnosis = diagnose(read_plc(arguments.input), arguments.options);
@@ -31,6 +31,7 @@ int run(const DoctorCommand& arguments) {
         Json json = json_header("doctor", arguments.input);
         json["exit_status"] = status;
         json.update(to_json(diagnosis));
+        const Interrupt::Cooperative cooperative(interrupt);  // a file once begun is finished
         write_json(arguments.json, json);
     }
     print_report(render_diagnosis(diagnosis), arguments.json);
@@ -45,7 +46,7 @@ void add_doctor_command(CLI::App& program, Command& selected) {
     command.add_option("INPUT", arguments->input, "domain: .poly .smesh .off .stl .obj .ply .mesh")->required()->type_name("");
     add_coplanar_tolerance_flag(command, arguments->options);
     add_json_flag(command, arguments->json);
-    command.callback([&selected, arguments] { selected = [arguments](Interrupt&) { return run(*arguments); }; });
+    command.callback([&selected, arguments] { selected = [arguments](Interrupt& interrupt) { return run(*arguments, interrupt); }; });
 }
 
 }  // namespace wellmesh::cli

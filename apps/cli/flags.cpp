@@ -51,21 +51,30 @@ std::uint64_t read_count(const std::string& text, const std::string& flag) {
     return value;
 }
 
-/// TetGen's family: one name stands for .node, .ele, .face and .edge, so that the first of these beside a .poly is its input.
-bool replaces_input(const fs::path& output, const fs::path& input) {
-    std::error_code ignored;
-    if (fs::equivalent(output, input, ignored)) return true;
-    const bool node_family = output.extension() == ".node" || output.extension() == ".ele";
-    if (!node_family) return false;
-    for (const char* extension : {".node", ".ele", ".face", ".edge"})
-        if (fs::equivalent(fs::path(output).replace_extension(extension), input, ignored)) return true;
-    const bool input_has_nodes = input.extension() == ".poly" || input.extension() == ".smesh" || input.extension() == ".ele";
-    return input_has_nodes && fs::equivalent(fs::path(output).replace_extension(".node"), fs::path(input).replace_extension(".node"), ignored);
+std::string lower_extension(const fs::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    return extension;
 }
 
-fs::path file_written(const fs::path& output) {
-    fs::path name = resolved(output);
-    return name.extension() == ".ele" ? name.replace_extension(".node") : name;
+/// All files that reading or writing this one touches: in TetGen's family one name stands for several.
+std::vector<fs::path> files_behind(const fs::path& path) {
+    std::vector<fs::path> files{resolved(path)};
+    const std::string extension = lower_extension(path);
+    const auto add = [&](std::initializer_list<const char*> siblings) {
+        for (const char* sibling : siblings) files.push_back(fs::path(files[0]).replace_extension(sibling));
+    };
+    if (extension == ".node" || extension == ".ele") add({".node", ".ele", ".face", ".edge"});
+    if (extension == ".poly" || extension == ".smesh") add({".node"});
+    return files;
+}
+
+bool share_a_file(const fs::path& a, const fs::path& b) {
+    std::error_code ignored;
+    for (const fs::path& p : files_behind(a))
+        for (const fs::path& q : files_behind(b))
+            if (p == q || fs::equivalent(p, q, ignored)) return true;
+    return false;
 }
 
 }  // namespace
@@ -102,7 +111,7 @@ void add_mesh_flags(CLI::App& command, MeshOptions& options) {
         ->type_name("N");
     command.add_option_function<std::string>(
         "--time-limit", [&options](const std::string& text) { options.limits.time = read_seconds(text, "--time-limit"); },
-        "stop after this many seconds (default: none)")
+        "stop refining after this many seconds; the certificate and writing come on top (default: none)")
         ->type_name("SECONDS");
 }
 
@@ -159,15 +168,14 @@ void require_valid(const CertifyOptions& options) {
 
 void require_mesh_outputs(const std::vector<std::string>& outputs, const std::string& input) {
     std::vector<std::string> problems;
-    std::vector<fs::path> seen;
-    for (const std::string& output : outputs) {
-        const std::string extension = fs::path(output).extension().string();
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const std::string& output = outputs[i];
+        const std::string extension = lower_extension(output);
         if (std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) == kMeshExtensions.end())
             problems.push_back(fmt::format("{}: unknown mesh format '{}'; known are {}", output, extension, fmt::join(kMeshExtensions, " ")));
-        if (replaces_input(output, input)) problems.push_back(fmt::format("{}: writing it would replace the input {}", output, input));
-        if (std::find(seen.begin(), seen.end(), file_written(output)) != seen.end())
-            problems.push_back(fmt::format("{}: named twice", output));
-        seen.push_back(file_written(output));
+        if (share_a_file(output, input)) problems.push_back(fmt::format("{}: writing it would replace the input {}", output, input));
+        const bool twice = std::any_of(outputs.begin(), outputs.begin() + static_cast<std::ptrdiff_t>(i), [&](const std::string& o) { return share_a_file(o, output); });
+        if (twice) problems.push_back(fmt::format("{}: named twice", output));
     }
     if (!problems.empty()) bad_options(problems);
     for (const std::string& output : outputs) require_writable(output);
@@ -175,10 +183,11 @@ void require_mesh_outputs(const std::vector<std::string>& outputs, const std::st
 
 void require_report(const std::string& json, const std::vector<std::string>& others) {
     if (json.empty()) return;
+    const fs::path target = resolved(json);
     std::error_code ignored;
     for (const std::string& other : others)
-        if (resolved(json) == resolved(other) || fs::equivalent(json, other, ignored))
-            bad_options({fmt::format("--json {}: writing it would replace {}", json, other)});
+        for (const fs::path& file : files_behind(other))
+            if (target == file || fs::equivalent(target, file, ignored)) bad_options({fmt::format("--json {}: writing it would replace {}", json, file.string())});
     require_writable(json);
 }
 

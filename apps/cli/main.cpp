@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command line program: parses, runs one command, turns every failure into a message and an exit status.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -39,6 +41,15 @@ void print_error(const MeshError& error) {
     if (offenders.size() > kShown) fmt::print(stderr, "  and {} more\n", offenders.size() - kShown);
     if (error.code() == ErrorCode::bad_input && error.stage() == Stage::validate)
         fmt::print(stderr, "'wellmesh doctor' lists every defect.\n");
+}
+
+/// Without standard error a message would fail, or land in the next file that is opened.
+void ensure_standard_error() {
+    if (::fcntl(STDERR_FILENO, F_GETFD) != -1) return;
+    const int null = ::open("/dev/null", O_WRONLY);
+    if (null < 0 || null == STDERR_FILENO) return;
+    ::dup2(null, STDERR_FILENO);
+    ::close(null);
 }
 
 int run_guarded(const Command& command) {
@@ -83,6 +94,7 @@ int run(int argc, char** argv) {
 }  // namespace wellmesh::cli
 
 int main(int argc, char** argv) {
+    wellmesh::cli::ensure_standard_error();
     try {
         return wellmesh::cli::run(argc, argv);
     } catch (const wellmesh::MeshError& error) {  // --help into a full disk

@@ -56,6 +56,11 @@ std::string render(const MeshResult& result, const std::vector<StageTime>& stage
     for (const std::string& part : {render_goals(result.goals), render_claims(result.certificate), render_shape(result.certificate),
                                     render_regions(result.certificate), render_stages(stages)})
         if (!part.empty()) text += part + '\n';
+    // Whoever checks the file against its input must allow what the input's own rounding did.
+    const CertifyOptions defaults;
+    const MeshStatistics& s = result.statistics;
+    if (s.certificate_tolerance > defaults.tolerance || s.certificate_flat_angle_rad > defaults.flat_angle_rad)
+        text += fmt::format("note: the input's rounding shows in the mesh: check it with --tolerance {:.4g} --flat-angle {:.4g}\n", s.certificate_tolerance, s.certificate_flat_angle_rad);
     for (const std::string& note : result.statistics.notes) text += "note: " + note + '\n';
     for (const auto& file : files) text += "wrote " + file.string() + '\n';
     return text;
@@ -92,9 +97,11 @@ int mesh(const MeshCommand& arguments, Interrupt& interrupt) {
 
     const Stopwatch writing;
     std::vector<std::filesystem::path> files;
+    WriteOptions write = arguments.write;
+    write.stop = interrupt.token();
     for (const std::string& output : arguments.outputs) {
         if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, fmt::format("interrupted before {} was written", output));
-        const auto written = write_mesh(result.mesh, output, arguments.write);
+        const auto written = write_mesh(result.mesh, output, write);
         files.insert(files.end(), written.begin(), written.end());
     }
     if (!files.empty()) stages.push_back({.stage = Stage::write, .seconds = writing.seconds()});

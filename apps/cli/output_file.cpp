@@ -63,8 +63,8 @@ void write_text(const std::string& path, std::string_view text) {
         if (const int error = write_and_close(descriptor, text); error != 0) fail(path, error);
         return;
     }
-    const fs::path temporary = target.parent_path() / fmt::format(".{}.{}.tmp", target.filename().string(), ::getpid());
-    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const fs::path temporary = target.parent_path() / fmt::format(".wellmesh-report.{}.tmp", ::getpid());  // no longer than any name may be
+    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0) fail(path, errno);
     int error = write_and_close(descriptor, text);
     if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;

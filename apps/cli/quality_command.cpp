@@ -20,7 +20,7 @@ struct QualityCommand {
     std::string mesh, json;
 };
 
-int run(const QualityCommand& arguments) {
+int run(const QualityCommand& arguments, Interrupt& interrupt) {
     require_report(arguments.json, {arguments.mesh});
     const TetMesh mesh = read_mesh(arguments.mesh);
     Certificate certificate;
@@ -32,6 +32,7 @@ int run(const QualityCommand& arguments) {
         json["all"] = to_json(certificate.all);
         json["interior"] = to_json(certificate.interior);
         json["boundary"] = to_json(certificate.boundary);
+        const Interrupt::Cooperative cooperative(interrupt);  // a file once begun is finished
         write_json(arguments.json, json);
     }
     print_report(render_shape(certificate) + '\n' + render_histogram(certificate.all), arguments.json);
@@ -45,7 +46,7 @@ void add_quality_command(CLI::App& program, Command& selected) {
     auto arguments = std::make_shared<QualityCommand>();
     command.add_option("MESH", arguments->mesh, "tetrahedral mesh of any tool: .mesh (ASCII), .node/.ele")->required()->type_name("");
     add_json_flag(command, arguments->json);
-    command.callback([&selected, arguments] { selected = [arguments](Interrupt&) { return run(*arguments); }; });
+    command.callback([&selected, arguments] { selected = [arguments](Interrupt& interrupt) { return run(*arguments, interrupt); }; });
 }
 
 }  // namespace wellmesh::cli

@@ -132,24 +132,37 @@ void measure_regions(const SuspectMesh& mesh, Certificate& certificate) {
 
 bool broken(const Claim& claim) { return claim.state == Claim::State::refuted; }
 
+/// Thrown between claims, caught in certify().
+struct Stopped {};
+
 void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& options, const Plc* plc, Certificate& certificate) {
     auto& claims = certificate.claims;
+    const auto poll = [&] {
+        if (options.stop.stop_requested()) throw Stopped{};
+    };
+    poll();
     const Claim positive = claim_positive(mesh), distinct = claim_distinct_vertices(mesh), used = claim_used_vertices(mesh);
     FaceSurvey faces = survey_faces(mesh);
+    poll();
     const bool faces_in_order = !broken(positive) && !broken(faces.face_sharing) && !broken(faces.opposite_sides);
     const Claim disjoint = claim_disjoint(mesh, faces.constraints, faces_in_order);
     claims.insert(claims.end(), {positive, faces.face_sharing, faces.opposite_sides, faces.distinct_tets, disjoint, claim_conservation(mesh, faces), distinct, used,
                                  faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh)});
+    poll();
     {
         const BallSearch search(mesh.points());
         const GabrielFindings subfaces = claim_gabriel_subfaces(mesh, search, faces.constraints);
+        poll();
         const bool by_faces = faces_in_order && disjoint.state == Claim::State::proven && faces.locally_not_delaunay == 0 && !broken(used) && subfaces.touched_hull_faces == 0;
         claims.push_back(claim_delaunay(mesh, search, by_faces));
         claims.push_back(subfaces.claim);
+        poll();
         claims.push_back(claim_gabriel_subsegments(mesh, search, find_constraint_segments(mesh, faces.constraints, options.flat_angle_rad)));
     }
+    poll();
     measure_regions(mesh, certificate);
     append_plc_claims(mesh, faces.constraints, options, plc, certificate);
+    poll();
     append_shape_claims(mesh, faces.constraints, options, certificate);
 }
 
@@ -170,9 +183,14 @@ bool usable(const TetMesh& mesh, Certificate& certificate) {
 
 Certificate certify(const TetMesh& mesh, const CertifyOptions& options, const Plc* plc) {
     Certificate certificate;
+    std::string reason = "the mesh has unusable numbers or coordinates, or no tetrahedron";
     if (usable(mesh, certificate)) {
-        append_geometric_claims(SuspectMesh(mesh), options, plc, certificate);
-        return certificate;
+        try {
+            append_geometric_claims(SuspectMesh(mesh), options, plc, certificate);
+            return certificate;
+        } catch (const Stopped&) {
+            reason = "the check was stopped";
+        }
     }
     // The names of all the others, from a mesh of one tetrahedron, so that readers of a report find every claim.
     TetMesh stand_in;
@@ -180,7 +198,8 @@ Certificate certify(const TetMesh& mesh, const CertifyOptions& options, const Pl
     stand_in.tets = {{0, 1, 2, 3}};
     Certificate names;
     append_geometric_claims(SuspectMesh(stand_in), {}, nullptr, names);
-    for (const Claim& c : names.claims) certificate.claims.push_back(unchecked(c.name, c.statement, "the mesh has unusable numbers or coordinates, or no tetrahedron"));
+    for (const Claim& c : names.claims)
+        if (certificate.find(c.name) == nullptr) certificate.claims.push_back(unchecked(c.name, c.statement, reason));
     return certificate;
 }
 

@@ -28,7 +28,7 @@ constexpr unsigned kPickingCandidates = 12;
 
 class Generator {
 public:
-    Generator(const Plc& plc, const MeshOptions& options, const RunControl& control) : plc_(plc), options_(options), guard_(options.limits, control) {}
+    Generator(const Plc& plc, const MeshOptions& options, const RunControl& control) : plc_(plc), options_(options), control_(control), guard_(options.limits, control) {}
 
 private:
     template <class F>
@@ -64,6 +64,8 @@ public:
         CertifyOptions bounds;
         bounds.max_radius_edge_ratio = options_.quality.max_radius_edge_ratio;
         if (options_.quality.min_dihedral_angle_deg > 0) bounds.min_dihedral_angle_deg = options_.quality.min_dihedral_angle_deg;
+        bounds.max_volume = options_.size.max_volume;
+        bounds.stop = control_.stop;
         const double extent = input_extent(plc_);
         // Beyond the defaults only by what the input's own rounding did: the facets' tolerance, and the bend that it makes in the mesh.
         bounds.tolerance = std::max(bounds.tolerance, 4 * valid.coplanar_tolerance / extent);
@@ -85,7 +87,8 @@ private:
         BoundaryRefiner boundary(mesh, guard_, options_.seed);
         const auto count = [&] {
             vertices_ = mesh.vertex_count();
-            tets_ = mesh.tets().live();
+            tets_ = 0;
+            for (std::size_t i = 0; i < mesh.tets().slots(); ++i) tets_ += mesh.tets().is_finite(TetId{i}) && mesh.in_domain(TetId{i});
         };
         timed(Stage::conform, [&] {
             boundary.recover_all();
@@ -93,6 +96,7 @@ private:
             count();
         });
         Refiner refiner(mesh, boundary, guard_, options_);
+        refuse_hopeless(expected_vertices(valid, refiner.sizes()));
         if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 300'000 + 4 * expected_vertices(valid, refiner.sizes()));
         if (const double theta = options_.quality.min_dihedral_angle_deg; theta > 0)
             refiner.set_sliver_cosine(std::cos(std::min(theta, kPickingAngleDeg) * (std::numbers::pi / 180)), kPickingCandidates);
@@ -113,6 +117,15 @@ private:
         result_.mesh = extract_mesh(mesh);
         result_.statistics.guarded_insertions = refiner.statistics().guarded;
         result_.termination = termination(verdict);
+    }
+
+    /// A size that asks for more than a mesh can hold is told at once, not when memory ends. A limit of the user's may end the run before.
+    void refuse_hopeless(std::uint64_t expected) const {
+        constexpr std::uint64_t kMostVertices = (std::uint64_t{1} << 30) / 6;  // about six tetrahedra a vertex, 2^30 of them
+        if (expected > kMostVertices && !options_.limits.max_vertices && !options_.limits.time)
+            throw MeshError(ErrorCode::mesh_too_large, Stage::refine,
+                            fmt::format("the size asks for about {:.2g} vertices; a mesh can have {:.2g}: ask for a coarser one, or set a limit", static_cast<double>(expected),
+                                        static_cast<double>(kMostVertices)));
     }
 
     /// What the size goals alone ask for: refinement makes about 0.75 vertices a cubed circumradius bound, 0.4 a volume bound.
@@ -183,6 +196,7 @@ private:
 
     const Plc& plc_;
     const MeshOptions& options_;
+    const RunControl& control_;
     RunGuard guard_;
     MeshResult result_;
     std::uint64_t vertices_ = 0, tets_ = 0;

@@ -3,7 +3,7 @@
 //
 // Where leaves are equal this is the bcc lattice, which covers space with the fewest circumspheres: all its Delaunay tetrahedra are alike,
 // with dihedral angles of 60 and 90 degrees and circumradius sqrt(5)/4 of the lattice constant, and it is generic, so that small changes
-// far away change nothing. Leaves that share a corner differ by at most one level [Labelle06].
+// far away change nothing. Leaves that share a corner differ by at most one level [LabelleShewchuk07].
 #pragma once
 
 #include <array>

@@ -71,7 +71,7 @@ double LatticeSeeder::radius_bound(TetId t) const {
 }
 
 /// Circumspheres of tetrahedra at a subsegment or subface are at least as large as its own: splitting it is never in vain.
-void LatticeSeeder::split_boundary(double coarseness) {
+bool LatticeSeeder::split_boundary(double coarseness) {
     const TetStore& tets = mesh_.tets();
     std::vector<Subsegment> segments;
     std::vector<Subface> faces;
@@ -98,15 +98,20 @@ void LatticeSeeder::split_boundary(double coarseness) {
             }
         }
         const SplitRequest request{InsertionReason::boundary_by_size, VertexId{}};
-        for (const Subsegment& s : segments)
+        for (const Subsegment& s : segments) {
+            if (!may_go_on(segments.size())) break;
             if (mesh_.find_subsegment(s).valid()) boundary_.split(s, request);
+        }
         boundary_.conform();
+        if (!may_go_on(faces.size())) return false;
         if (!segments.empty()) continue;  // facets once their outlines are done
         for (const Subface& s : faces) {
+            if (!may_go_on(faces.size())) return false;
             boundary_.split(s, request);
             boundary_.conform();
         }
     } while (!segments.empty() || !faces.empty());
+    return true;
 }
 
 std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
@@ -175,7 +180,7 @@ std::uint64_t LatticeSeeder::seed() {
     if (base == kInfinity) return 0;
     // From coarse to fine: vertices on an empty domain's boundary would all be neighbours of each other.
     constexpr double kCoarsest = 8;
-    split_boundary(kCoarsest);
+    if (!split_boundary(kCoarsest)) return 0;
     const std::vector<LatticePoint> lattice = find_lattice(base);
     std::vector<Vec3> points;
     points.reserve(lattice.size());
@@ -184,14 +189,14 @@ std::uint64_t LatticeSeeder::seed() {
     std::vector<char> waits(lattice.size(), 1);
     std::uint64_t inserted = 0;
     for (double coarseness = kCoarsest; coarseness >= 1; coarseness /= 2) {
-        split_boundary(coarseness);
+        if (!split_boundary(coarseness)) return inserted;
         // As many as the coarse mesh would have.
         const auto share = static_cast<std::size_t>(static_cast<double>(order.size()) / (coarseness * coarseness * coarseness));
         TetId near{};
         for (std::size_t k = 0; k < share; ++k) {
             const std::uint32_t i = order[k];
             if (waits[i] == 0) continue;
-            if (guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), order.size() - inserted) != RunGuard::Verdict::go_on) return inserted;
+            if (!may_go_on(order.size() - inserted)) return inserted;
             const std::uint64_t key = mix64(boundary_.seed(), i);
             const Outcome outcome = insert(flush_to_exact_range(points[i] + (kLatticeJitter * lattice[i].spacing) * picking_point(3, key, 1)), near);
             if (outcome != Outcome::encroaches) waits[i] = 0;  // finer boundaries are encroached by fewer

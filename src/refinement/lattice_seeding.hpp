@@ -22,7 +22,7 @@ public:
 
     /// Splits subsegments and subfaces that no tetrahedron within its bound could have, then inserts the lattice's vertices, except those
     /// that lie close to the boundary or encroach upon it. The mesh conforms afterwards. @throws as BoundaryRefiner::conform does.
-    /// @return vertices inserted from the lattice
+    /// Ends early, the mesh conforming, when the guard says so. @return vertices inserted from the lattice
     std::uint64_t seed();
 
 private:
@@ -33,8 +33,9 @@ private:
 
     enum class Outcome : std::uint8_t { inserted, encroaches, refused };
 
-    /// Down to `coarseness` times the bound.
-    void split_boundary(double coarseness);
+    /// Down to `coarseness` times the bound. @return false if the guard said stop.
+    bool split_boundary(double coarseness);
+    [[nodiscard]] bool may_go_on(std::uint64_t waiting) { return guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting) == RunGuard::Verdict::go_on; }
     [[nodiscard]] std::vector<LatticePoint> find_lattice(double base);
     Outcome insert(const Vec3& p, TetId& near);
     [[nodiscard]] double radius_bound(TetId t) const;

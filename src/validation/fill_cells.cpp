@@ -15,7 +15,7 @@ namespace {
 class CellFiller {
 public:
     CellFiller(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, Report& report)
-        : input_(input), soup_(soup), map_(map), lines_(lines), report_(report), plc_(report.plc()), cells_(map.size()), is_hole_(map.size(), 0) {}
+        : input_(input), soup_(soup), map_(map), lines_(lines), report_(report), plc_(report.plc()), cells_(map.size()), is_hole_(map.size(), 0), has_seed_(map.size(), 0) {}
 
     std::vector<ValidCell> run() {
         for (std::size_t c = 0; c < map_.size(); ++c) cells_[c].volume = map_.volume[c];
@@ -44,7 +44,7 @@ private:
     Report& report_;
     const Plc& plc_;
     std::vector<ValidCell> cells_;
-    std::vector<char> is_hole_;
+    std::vector<char> is_hole_, has_seed_;
 };
 
 /// The cell of a seed; nothing (reported) if the seed is unusable.
@@ -144,6 +144,7 @@ void CellFiller::place_regions() {
             continue;
         }
         seed_of[*cell] = r;
+        has_seed_[*cell] = 1;
         c.region = seed.id;
         c.max_volume = seed.max_volume;
     }
@@ -153,10 +154,10 @@ void CellFiller::number_rest() {
     std::set<std::int32_t> taken;
     for (const RegionSeed& s : plc_.region_seeds) taken.insert(s.id);
     std::int32_t next = 1;
-    for (ValidCell& c : cells_) {
-        if (!c.filled || c.region != 0) continue;
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+        if (!cells_[c].filled || has_seed_[c]) continue;
         while (taken.contains(next)) ++next;
-        c.region = next++;
+        cells_[c].region = next++;
     }
 }
 

@@ -71,8 +71,7 @@ void ValidPlcBuilder::run() {
     const CellMap map = find_cells(input.points, soup.triangles, edges, lines);
     out.cells = fill_cells(input, soup, map, lines, report);
     attach_cells(map);
-    if (report.has_errors()) return;
-    drop_outside(lines, map);
+    if (!report.has_errors()) drop_outside(lines, map);
     keep_isolated_vertices(lines, map);
     compress_vertices();
     out.acute_features = find_sharp_features(out, rounding, report);

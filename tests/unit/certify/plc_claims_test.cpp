@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -59,14 +62,38 @@ TEST(PlcClaims, FacetThatTheMeshIgnores) {
     EXPECT_EQ(state(certificate, "region_volumes"), Claim::State::proven);
 }
 
+TEST(PlcClaims, FacetListedTwiceIsOneFacet) {
+    for (const bool turned : {false, true}) {
+        BoxMesh box = two_region_box();
+        PlcFacet again = box.plc.facets.front();
+        if (turned) std::reverse(again.polygons[0].begin(), again.polygons[0].end());
+        std::rotate(again.polygons[0].begin(), again.polygons[0].begin() + 1, again.polygons[0].end());
+        box.plc.facets.push_back(again);
+        EXPECT_TRUE(certify(box.mesh, {}, &box.plc).proven()) << turned;
+    }
+}
+
+TEST(PlcClaims, FinIsForgivenAndDoesNotBreakTheShell) {
+    BoxMesh box = two_region_box();
+    const std::vector<std::uint32_t> wall = box.plc.facets.front().polygons[0];
+    const Vec3 p = box.plc.vertices[wall[0]], q = box.plc.vertices[wall[1]];
+    const Vec3 out{p.x + q.x - 1, p.y + q.y - 1, p.z + q.z - 1.5};
+    const std::uint32_t tip = add_vertex(box.plc, {10 * out.x, 10 * out.y, 10 * out.z});
+    box.plc.facets.push_back({{{wall[0], wall[1], tip}}, {}, 0});
+    EXPECT_EQ(state(certify(box.mesh, {}, &box.plc), "plc_filled"), Claim::State::proven);
+}
+
 TEST(PlcClaims, FacetsOutsideTheMeshAreForgivenIfCellsMayBeLeftOut) {
     BoxMesh box = two_region_box();
-    const std::uint32_t a = add_vertex(box.plc, {10, 0, 0}), b = add_vertex(box.plc, {11, 0, 0}), c = add_vertex(box.plc, {10, 1, 0});
-    box.plc.facets.push_back({{{a, b, c}}, {}, 0});
+    const std::uint32_t a = add_vertex(box.plc, {10, 0, 0}), b = add_vertex(box.plc, {11, 0, 0}), c = add_vertex(box.plc, {10, 1, 0}), d = add_vertex(box.plc, {10, 0, 1});
+    const std::uint32_t e = add_vertex(box.plc, {9, 0, 0});
+    const std::size_t first = box.plc.facets.size();
+    for (const std::array<std::uint32_t, 3>& corners : {std::array{a, b, c}, std::array{a, b, d}, std::array{a, c, d}, std::array{b, c, d}, std::array{a, c, e}})
+        box.plc.facets.push_back({{{corners[0], corners[1], corners[2]}}, {}, 0});
     Certificate certificate = certify(box.mesh, {}, &box.plc);
-    EXPECT_EQ(certificate.find("plc_filled")->violations, 1U);
-    EXPECT_EQ(certificate.find("plc_filled")->witness->number, box.plc.facets.size());
-    EXPECT_NE(certificate.find("plc_area")->detail.find("outside the mesh 0.5"), std::string::npos) << certificate.find("plc_area")->detail;
+    EXPECT_EQ(certificate.find("plc_filled")->violations, 4U) << "four bound a cell, the fifth is a fin";
+    EXPECT_EQ(certificate.find("plc_filled")->witness->number, first + 1);
+    EXPECT_NE(certificate.find("plc_area")->detail.find("outside the mesh 2.86603"), std::string::npos) << certificate.find("plc_area")->detail;
     for (const char* name : {"plc_distance", "plc_area", "plc_vertices", "plc_segments", "region_volumes"}) EXPECT_EQ(state(certificate, name), Claim::State::proven) << name;
     box.plc.hole_seeds.push_back({10.1, 0.1, 0.1});
     certificate = certify(box.mesh, {}, &box.plc);

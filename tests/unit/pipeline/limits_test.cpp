@@ -105,6 +105,7 @@ TEST(Limits, StopBeforeTheStart) {
             const MeshResult result = generate(named.plc, options, control);
             EXPECT_EQ(result.termination, Termination::cancelled);
             expect_valid(result);
+            EXPECT_TRUE(certify(result.mesh, {}, &named.plc).proven());
         } catch (const MeshError& e) {
             EXPECT_EQ(e.code(), ErrorCode::cancelled) << e.what();
         }
@@ -122,10 +123,13 @@ TEST(Limits, StopWhileRefiningHandsOutTheMesh) {
     };
     MeshOptions options;
     options.size.edge_length = 0.02;
-    const MeshResult result = generate(transformed(cube(), 1, 0, 1), options, control);
+    const Plc plc = transformed(cube(), 1, 0, 1);
+    const MeshResult result = generate(plc, options, control);
     EXPECT_EQ(result.termination, Termination::cancelled);
     EXPECT_GT(calls, 0U);
     expect_valid(result);
+    EXPECT_EQ(result.certificate.find("delaunay")->state, Claim::State::not_checked);
+    EXPECT_TRUE(certify(result.mesh, {}, &plc).proven());
     EXPECT_LT(result.mesh.vertices.size(), 50000U);
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/extract_mesh.hpp"
+#include "refinement/lattice_seeding.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
 #include "wellmesh/certificate.hpp"
@@ -14,7 +15,10 @@ namespace {
 struct SizeCase {
     double edge_length;
     std::size_t least_tets, most_tets;
+    bool seeded = false;
 };
+
+void PrintTo(const SizeCase& c, std::ostream* out) { *out << c.edge_length << (c.seeded ? " seeded" : ""); }
 
 class EdgeLength : public ::testing::TestWithParam<SizeCase> {};
 
@@ -24,6 +28,7 @@ TEST_P(EdgeLength, IsTheMeanEdgeOfACubeWithinTenPercent) {
     StagedMesh staged(cube(), options);
     staged.conform();
     Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+    if (GetParam().seeded) LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes()).seed();
     ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
     EXPECT_EQ(staged.problem(true), "");
     Certificate measured;
@@ -35,7 +40,8 @@ TEST_P(EdgeLength, IsTheMeanEdgeOfACubeWithinTenPercent) {
     staged.for_domain([&](TetId t) { ASSERT_LE(staged.shape(t).circumradius, bound * (1 + 1e-9)); });
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, EdgeLength, ::testing::Values(SizeCase{0.2, 700, 2000}, SizeCase{0.1, 6000, 14000}, SizeCase{0.052, 45000, 90000}));
+INSTANTIATE_TEST_SUITE_P(Sizes, EdgeLength, ::testing::Values(SizeCase{0.2, 700, 2500}, SizeCase{0.1, 6000, 16000}, SizeCase{0.052, 45000, 110000}, SizeCase{0.1, 4000, 12000, true},
+                                                            SizeCase{0.052, 30000, 75000, true}, SizeCase{0.026, 200000, 600000, true}));
 
 TEST(Sizing, MaxVolumeIsRespected) {
     for (const NamedPlc& named : all_synthetic_plcs())

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinement/graded_octree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/rng.hpp"
+#include "core/vec3_math.hpp"
+
+namespace wellmesh::testing {
+namespace {
+
+void split_all(GradedOctree& tree, unsigned levels) {
+    for (unsigned l = 0; l < levels; ++l)
+        for (std::uint32_t i = 0, n = static_cast<std::uint32_t>(tree.size()); i < n; ++i)
+            if (tree.is_leaf(i)) tree.split(i);
+}
+
+std::vector<std::uint32_t> leaves(const GradedOctree& tree) {
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t i = 0; i < tree.size(); ++i)
+        if (tree.is_leaf(i)) out.push_back(i);
+    return out;
+}
+
+TEST(GradedOctree, EqualLeavesMakeTheBodyCentredCubicLattice) {
+    GradedOctree tree({-1, 2, 5}, 4);
+    split_all(tree, 3);
+    for (const std::uint32_t i : leaves(tree)) tree.use(i);
+    tree.balance();
+    const std::vector<LatticePoint> lattice = tree.lattice();
+    EXPECT_EQ(lattice.size(), 8U * 8 * 8 + 9U * 9 * 9);
+    for (const LatticePoint& p : lattice) {
+        EXPECT_EQ(p.spacing, 0.5);
+        // An inner point has eight neighbours at sqrt(3)/2 of the lattice constant, six at one.
+        const bool inner = p.point.x > -0.5 && p.point.x < 2.5 && p.point.y > 2.5 && p.point.y < 5.5 && p.point.z > 5.5 && p.point.z < 8.5;
+        if (!inner) continue;
+        std::size_t near = 0, at_one = 0;
+        for (const LatticePoint& q : lattice) {
+            const double d = distance(p.point, q.point) / 0.5;
+            near += std::abs(d - std::sqrt(0.75)) < 1e-12;
+            at_one += std::abs(d - 1) < 1e-12;
+        }
+        EXPECT_EQ(near, 8U);
+        EXPECT_EQ(at_one, 6U);
+    }
+}
+
+TEST(GradedOctree, UnusedLeavesHaveNoPoints) {
+    GradedOctree tree({0, 0, 0}, 1);
+    split_all(tree, 2);
+    EXPECT_TRUE(tree.lattice().empty());
+    tree.use(leaves(tree).front());
+    EXPECT_EQ(tree.lattice().size(), 9U);
+}
+
+TEST(GradedOctree, LeavesThatShareACornerDifferByOneLevelAtMost) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        GradedOctree tree({0, 0, 0}, 1);
+        split_all(tree, 1);
+        // Towards a random point, so that levels jump.
+        const Vec3 aim{unit_double(mix64(seed, 1)), unit_double(mix64(seed, 2)), unit_double(mix64(seed, 3))};
+        for (unsigned level = 0; level < 6; ++level)
+            for (const std::uint32_t i : leaves(tree)) {
+                const auto box = tree.box(i);
+                const bool holds = aim.x >= box.lo.x && aim.x < box.lo.x + box.side && aim.y >= box.lo.y && aim.y < box.lo.y + box.side && aim.z >= box.lo.z && aim.z < box.lo.z + box.side;
+                if (holds) tree.split(i);
+            }
+        for (const std::uint32_t i : leaves(tree)) tree.use(i);
+        tree.balance();
+        const auto all = leaves(tree);
+        double volume = 0;
+        for (const std::uint32_t i : all) {
+            const auto a = tree.box(i);
+            volume += a.side * a.side * a.side;
+            for (const std::uint32_t j : all) {
+                const auto b = tree.box(j);
+                const bool touch = a.lo.x <= b.lo.x + b.side && b.lo.x <= a.lo.x + a.side && a.lo.y <= b.lo.y + b.side && b.lo.y <= a.lo.y + a.side && a.lo.z <= b.lo.z + b.side &&
+                                   b.lo.z <= a.lo.z + a.side;
+                if (touch) { ASSERT_LE(a.side, 2 * b.side) << seed; }
+            }
+        }
+        EXPECT_EQ(volume, 1);
+        std::vector<LatticePoint> lattice = tree.lattice();
+        std::sort(lattice.begin(), lattice.end(), [](const LatticePoint& p, const LatticePoint& q) { return lexicographically_less(p.point, q.point); });
+        for (std::size_t i = 1; i < lattice.size(); ++i) ASSERT_NE(lattice[i - 1].point, lattice[i].point);
+    }
+}
+
+}  // namespace
+}  // namespace wellmesh::testing

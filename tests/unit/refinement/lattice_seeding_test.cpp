@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinement/lattice_seeding.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "support/expect_result.hpp"
+#include "support/staged_mesh.hpp"
+#include "support/synthetic_plcs.hpp"
+#include "wellmesh/generate.hpp"
+
+namespace wellmesh::testing {
+namespace {
+
+MeshOptions sized(double edge_length, Seeding seeding = Seeding::automatic) {
+    MeshOptions options;
+    options.size.edge_length = edge_length;
+    options.seeding = seeding;
+    return options;
+}
+
+TEST(LatticeSeeding, MeshConformsAndKeepsItsBoundsWithFewerVertices) {
+    for (const NamedPlc& named : all_synthetic_plcs())
+        for (std::uint64_t rotation = 0; rotation < 2; ++rotation) {
+            SCOPED_TRACE(fmt::format("{} rotation {}", named.name, rotation));
+            const Plc plc = transformed(named.plc, rotation, 0, 1);
+            const MeshOptions options = sized(0.03 * diagonal(named.plc));
+            StagedMesh staged(plc, options);
+            staged.conform();
+            Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+            EXPECT_GT(LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes()).seed(), 100U);
+            EXPECT_EQ(staged.problem(false), "");
+            ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
+            EXPECT_EQ(staged.problem(true), "");
+
+            const MeshResult seeded = generate(plc, options), plain = generate(plc, sized(*options.size.edge_length, Seeding::off));
+            expect_goals_met(seeded);
+            EXPECT_LT(static_cast<double>(seeded.mesh.vertices.size()), 0.9 * static_cast<double>(plain.mesh.vertices.size()));
+        }
+}
+
+/// Sixty degrees inside, unlike what refinement alone makes: the lattice survives.
+TEST(LatticeSeeding, InsideIsTheLattice) {
+    const MeshOptions options = sized(0.04);
+    StagedMesh staged(cube(), options);
+    staged.conform();
+    Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+    LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes()).seed();
+    ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
+    std::size_t inner = 0;
+    staged.for_domain([&](TetId t) {
+        for (const VertexId v : staged.mesh.tets().corners(t)) {
+            const Vec3& p = staged.mesh.point(v);
+            if (std::min({p.x, p.y, p.z, 1 - p.x, 1 - p.y, 1 - p.z}) < 0.15) return;
+        }
+        ++inner;
+        EXPECT_NEAR(staged.shape(t).min_dihedral_deg, 60, 0.1);
+    });
+    EXPECT_GT(inner, 5000U);
+}
+
+TEST(LatticeSeeding, WhereNothingIsAskedNothingChanges) {
+    for (const Seeding seeding : {Seeding::automatic, Seeding::off}) {
+        MeshOptions options;
+        options.seeding = seeding;
+        const MeshResult result = generate(l_block(), options);
+        expect_goals_met(result);
+        EXPECT_LT(result.mesh.vertices.size(), 100U);
+    }
+}
+
+TEST(LatticeSeeding, TooThinCellsAreLeftAlone) {
+    // A plate one lattice constant thick.
+    Plc plate = cube();
+    for (Vec3& p : plate.vertices) p.z *= 0.06;
+    const MeshOptions automatic = sized(0.05);
+    EXPECT_EQ(generate(plate, automatic).mesh.vertices, generate(plate, sized(0.05, Seeding::off)).mesh.vertices);
+}
+
+TEST(LatticeSeeding, RegionsOfDifferentSizesGradeOverTheOctree) {
+    Plc plc = cube_with_internal_facet();
+    ASSERT_EQ(plc.region_seeds.size(), 2U);
+    plc.region_seeds[0].max_volume = 2e-3;
+    plc.region_seeds[1].max_volume = 2e-3 / 512;  // eight times finer
+    const MeshResult result = generate(plc, {});
+    expect_goals_met(result);
+    MeshOptions off;
+    off.seeding = Seeding::off;
+    EXPECT_LT(result.mesh.vertices.size(), generate(plc, off).mesh.vertices.size());
+}
+
+TEST(LatticeSeeding, BudgetsHold) {
+    for (const std::uint64_t budget : {50U, 400U, 3000U}) {
+        MeshOptions options = sized(0.02);
+        options.limits.max_vertices = budget;
+        const MeshResult result = generate(cube(), options);
+        expect_valid(result);
+        EXPECT_EQ(result.termination, Termination::vertex_budget_reached);
+        EXPECT_LE(result.mesh.vertices.size(), budget + 64);
+    }
+}
+
+}  // namespace
+}  // namespace wellmesh::testing
