@@ -143,17 +143,13 @@ bool Refiner::star_is_good(const Cavity& cavity, const Placement& where) const {
 }
 
 bool Refiner::star_has_small_sliver(const Cavity& cavity, const Placement& where, double radius) const {
-    for (const BoundaryFace& b : cavity.boundary) {
-        const TetId behind = b.inside.tet();
-        if (!mesh_.in_domain(behind)) continue;
+    if (where.carrier != CarrierKind::region) mesh_.plan_insertion(cavity, where);
+    for (std::size_t i = 0; i < cavity.boundary.size(); ++i) {
+        const BoundaryFace& b = cavity.boundary[i];
+        const bool changes_sides = where.carrier != CarrierKind::region && mesh_.changes_sides(i);
+        if (!mesh_.in_domain((changes_sides ? b.outside : b.inside).tet())) continue;
         const auto c = mesh_.tets().face_corners(b.inside);
         if (c[0] == kInfiniteVertex || c[1] == kInfiniteVertex || c[2] == kInfiniteVertex) continue;
-        if (const FacetId f = mesh_.facet_at(b.inside); f.valid() && where.carrier != CarrierKind::region) {
-            // A flat tetrahedron against a subface of the point's own carrier will lie outside.
-            if (where.carrier == CarrierKind::facet && f.value() == where.carrier_id) continue;
-            const auto on_segment = [&](const std::vector<FacetId>& facets) { return std::find(facets.begin(), facets.end(), f) != facets.end(); };
-            if (where.carrier == CarrierKind::segment && on_segment(mesh_.plc().segments[where.carrier_id].facets)) continue;
-        }
         const Vec3 &p = mesh_.point(c[0]), &q = mesh_.point(c[1]), &r = mesh_.point(c[2]);
         const double squared_edge = shortest_edge_squared(p, q, r, cavity.point);
         const double limit = 6 * sliver_rule_.sigma * squared_edge * std::sqrt(squared_edge);

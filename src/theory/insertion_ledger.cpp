@@ -40,8 +40,9 @@ InsertionLedger::InsertionLedger(const TheoryConstants& constants, double positi
 void InsertionLedger::observe(ClaimId id, double value, double slack, const Vec3& where, const std::string& witness) {
     InvariantClaim& claim = at(id);
     ++claim.events;
-    const bool good = claim.at_least ? value >= claim.bound - slack * std::abs(claim.bound) - (claim.bound == 0 ? slack : 0)
-                                     : value <= claim.bound + slack * std::abs(claim.bound) + (claim.bound == 0 ? slack : 0);
+    // Relative to the bound, if there is one: 0 bounds barycentric coordinates and counts.
+    const double allowance = !std::isfinite(claim.bound) ? 0 : claim.bound == 0 ? slack : slack * std::abs(claim.bound);
+    const bool good = claim.at_least ? value >= claim.bound - allowance : value <= claim.bound + allowance;
     const bool worse = !(claim.at_least ? value >= claim.worst : value <= claim.worst);  // true for the first
     if (worse) claim.worst = value;
     if (!good) ++claim.violations;
