@@ -139,6 +139,7 @@ Json to_json(const InvariantReport& report) {
     json["d2"] = report.d2;
     json["d3"] = report.d3;
     json["original_edge"] = report.original_edge;
+    json["shortest_edge"] = report.shortest_edge;
     json["original_vertices"] = report.original_vertices;
     json["almost_good_vertices"] = report.almost_good_vertices;
     json["final_vertices"] = report.final_vertices;

@@ -27,6 +27,7 @@ struct InvariantReport {
     double d1 = 0, d2 = 0, d3 = 0;                  ///< of Theorem 5.1; infinite where its inequalities have no solution
     double log10_existence_sigma0 = 0;              ///< the existence theorem's own sigma0, as a power of ten
     double original_edge = 0;                       ///< l_org: shortest edge of the mesh that conforms and meets its size
+    double shortest_edge = 0;                       ///< of the final mesh
     std::uint64_t original_vertices = 0, almost_good_vertices = 0, final_vertices = 0;
     std::vector<InvariantClaim> claims;
 

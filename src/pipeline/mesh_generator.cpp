@@ -75,7 +75,12 @@ public:
         result_.statistics.certificate_flat_angle_rad = bounds.flat_angle_rad;
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
         fail_if_refuted();
-        judge_invariants(result_, options_);
+        try {
+            judge_invariants(result_, options_);
+        } catch (const MeshError& e) {
+            if (!valid.acute_features.empty()) throw acute_failure(valid, e);  // the paper assumes that there are none
+            throw;
+        }
         report_goals(result_, options_, valid);
         result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
         return std::move(result_);
@@ -105,7 +110,8 @@ private:
             refiner.set_sliver_cosine(std::cos(std::min(theta, kPickingAngleDeg) * (std::numbers::pi / 180)), kPickingCandidates);
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
-            if (options_.seeding == Seeding::automatic) LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
+            // The paper has no seeds: its original mesh is made by its own rules.
+            if (options_.seeding == Seeding::automatic && options_.mode == Mode::practical) LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
             verdict = refiner.refine();
             finish_theory(recorder.get(), boundary, result_);
             count();

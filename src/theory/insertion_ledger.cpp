@@ -21,6 +21,7 @@ const char* name_of(InsertionReason reason) {
     switch (reason) {
         case InsertionReason::input: return "input";
         case InsertionReason::recovery: return "recovery";
+        case InsertionReason::lattice: return "the lattice";
         case InsertionReason::encroachment: return "an encroaching vertex";
         case InsertionReason::size:
         case InsertionReason::boundary_by_size: return "size";

@@ -47,7 +47,26 @@ std::vector<double> RunRecorder::nearest_neighbours() const {
     return squared;
 }
 
+/// Vertices that came without an event (lattice seeds) enter the account with nothing claimed of them.
+void RunRecorder::enter_unpicked(std::size_t vertices) {
+    while (ledger_.vertices() < vertices) {
+        const VertexId v{ledger_.vertices()};
+        PickEvent seed;
+        seed.reason = InsertionReason::lattice;
+        seed.point = mesh_.point(v);
+        seed.vertex = v;
+        seed.nearest = mesh_.info(v).insertion_length;
+        (void)ledger_.add(seed);
+    }
+}
+
+std::uint32_t RunRecorder::on_pick(const PickEvent& event) {
+    enter_unpicked(event.vertex.valid() ? event.vertex.index() : mesh_.vertex_slots());
+    return ledger_.add(event);
+}
+
 void RunRecorder::on_milestone(Milestone reached) {
+    enter_unpicked(mesh_.vertex_slots());
     if (!ledger_.has_original()) {
         double shortest = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
@@ -70,7 +89,7 @@ double RunRecorder::local_feature_size(const Vec3& x) const {
     return original_spacing_ ? std::min(lfs, (*original_spacing_)(x)) : lfs;
 }
 
-void RunRecorder::check_final_tetrahedra() {
+double RunRecorder::check_final_tetrahedra() {
     double shortest = std::numeric_limits<double>::infinity();
     Vec3 where;
     for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
@@ -92,6 +111,7 @@ void RunRecorder::check_final_tetrahedra() {
     if (ledger_.has_original())
         ledger_.observe(ClaimId::theorem_4_2, shortest / ledger_.reference_edge(), ledger_.position_error() / shortest, where,
                         fmt::format("shortest edge of the final mesh, {:.9g}, at ({}, {}, {})", shortest, where.x, where.y, where.z));
+    return shortest;
 }
 
 void RunRecorder::check_final_vertices() {
@@ -107,13 +127,14 @@ void RunRecorder::check_final_vertices() {
 
 InvariantReport RunRecorder::finish() {
     ledger_.check_density([this](const Vec3& x) { return local_feature_size(x); });
-    check_final_tetrahedra();
+    const double shortest = check_final_tetrahedra();
     check_final_vertices();
     const auto final_vertices = static_cast<double>(mesh_.vertex_count());
     if (almost_good_vertices_ > 0)
         ledger_.observe(ClaimId::theorem_5_3, final_vertices / static_cast<double>(almost_good_vertices_), 0, {},
                         fmt::format("{} vertices, {} of them when the mesh was almost good", mesh_.vertex_count(), almost_good_vertices_));
     InvariantReport report = ledger_.report();
+    report.shortest_edge = shortest;
     report.almost_good_vertices = almost_good_vertices_;
     report.final_vertices = mesh_.vertex_count();
     return report;

@@ -16,16 +16,17 @@ public:
     /// @param sized  the run has size goals: the mesh that meets them is the paper's original mesh, and its spacing bounds lfs, too.
     RunRecorder(const ConformingMesh& mesh, const TheoryConstants& constants, bool sized);
 
-    std::uint32_t on_pick(const PickEvent& event) override { return ledger_.add(event); }
+    std::uint32_t on_pick(const PickEvent& event) override;
     void on_milestone(Milestone reached) override;
 
     /// Checks what is left, on the mesh as it is, and reports. To be called once.
     [[nodiscard]] InvariantReport finish();
 
 private:
+    void enter_unpicked(std::size_t vertices);
     [[nodiscard]] double local_feature_size(const Vec3& x) const;
     [[nodiscard]] std::vector<double> nearest_neighbours() const;
-    void check_final_tetrahedra();
+    double check_final_tetrahedra();  ///< @return the shortest edge
     void check_final_vertices();
 
     const ConformingMesh& mesh_;

@@ -2,6 +2,8 @@
 // The account of real runs: nothing is violated, unless the events are tampered with on their way; and the picks against oracles.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "quality/tet_shape.hpp"
@@ -53,6 +55,17 @@ InvariantReport run(const Plc& plc, const std::function<void(Tamper&, StagedMesh
     return recorder.finish();
 }
 
+/// Two wires that cross at a hundredth of their length: nothing is encroached at first, and the sliver that they span is an original one. Its centre
+/// splits one wire, that vertex encroaches the other, whose new vertex is a hundredth of l_org away: Theorem 4.2 as the paper states it fails.
+Plc crossing_wires() {
+    Plc plc = cube(6);
+    for (Vec3& p : plc.vertices) p = p - Vec3{3, 3, 3};
+    const auto first = static_cast<std::uint32_t>(plc.vertices.size());
+    for (const Vec3& p : {Vec3{-1, 0, 0}, Vec3{1, 0, 0}, Vec3{0, -1, 0.01}, Vec3{0, 1, 0.01}}) plc.vertices.push_back(p);
+    plc.segments = {{{first, first + 1}, 0}, {{first + 2, first + 3}, 0}};
+    return plc;
+}
+
 /// Domains whose runs remove slivers and split boundaries for them.
 Plc eventful() { return transformed(random_polycube(5).plc, 1, 0, 1); }
 
@@ -70,6 +83,15 @@ TEST(RunRecorder, NoClaimIsViolated) {
     }
     EXPECT_GT(slivers, 40U);  // or the test shows nothing
     EXPECT_GT(boundary, 20U);
+}
+
+TEST(RunRecorder, CrossingWiresRefuteTheoremFourTwoAsStatedButNotAsCorrected) {
+    const InvariantReport report = run(crossing_wires());
+    for (const InvariantClaim& c : report.claims)
+        if (c.name != "theorem_4_1") { EXPECT_EQ(c.violations, 0U) << c.name << ": " << c.witness; }
+    EXPECT_GE(report.find("encroaching_vertex")->events, 1U);
+    EXPECT_NEAR(report.original_edge, std::sqrt(2.0), 1e-3);
+    EXPECT_LT(report.shortest_edge, 0.02);  // (1 - delta) / 4 of l_org would be 0.336
 }
 
 TEST(RunRecorder, TamperedRunsAreRefuted) {
