@@ -68,16 +68,14 @@ void finish_theory(RunRecorder* recorder, BoundaryRefiner& boundary, MeshResult&
 
 void judge_invariants(MeshResult& result, const MeshOptions& options) {
     if (options.mode != Mode::certified || !result.invariants) return;
-    std::string broken;
-    std::vector<ElementRef> offenders;
+    std::string broken;  // witnesses say where: vertices that were inserted have no number in the input
     for (const InvariantClaim& claim : result.invariants->claims) {
         if (claim.violations == 0 || claim.name == "theorem_4_1") continue;
         broken += fmt::format("{}{} ({}): {} of {} events, bound {:.6g}, worst {:.6g}, first: {}", broken.empty() ? "" : "; ", claim.name, claim.statement, claim.violations,
                               claim.events, claim.bound, claim.worst, claim.witness);
-        offenders.push_back({EntityKind::vertex, 0, claim.where});
     }
     if (!broken.empty())
-        throw MeshError(ErrorCode::internal_invariant, Stage::refine, "the run violates what is proven of it; please report this input: " + broken, offenders);
+        throw MeshError(ErrorCode::internal_invariant, Stage::refine, "the run violates what is proven of it; please report this input: " + broken);
     // Above the existence theorem's own sigma0, which no double holds, points without new small slivers need not exist.
     if (const InvariantClaim* existence = result.invariants->find("theorem_4_1"))
         result.goals.push_back({"picks that avoid new small slivers", 1, existence->violations == 0 ? 1.0 : 0.0, existence->violations == 0, existence->violations, {}});

@@ -126,6 +126,7 @@ std::uint32_t InsertionLedger::add(const PickEvent& e) {
         r.root = records_[r.parent].root;
         r.direct = records_[r.parent].direct;
     }
+    if (e.reason == InsertionReason::recovery) r.by_vertex = true;
     const bool picked = e.element.size > 0 && !e.outside_rules;
     if (picked && r.vertex != kNone) check(ClaimId::picking_region, distance(e.point, e.element.centre) / r.radius, r);
     if (picked && e.element.size == 4) take_tetrahedron(r, e);
@@ -263,7 +264,8 @@ void InsertionLedger::check_density(const std::function<double(const Vec3&)>& lo
         if (r.element == 4) check(ClaimId::theorem_5_1_inside, density, r);
         else if (r.element == 3) check(ClaimId::theorem_5_1_facets, density, r);
         else if (r.element == 2) check(ClaimId::theorem_5_1_segments, density, r);
-        if (r.by_vertex && r.after_original && r.parent != kNone && records_[r.parent].vertex != kNone) check(ClaimId::encroaching_vertex, density, r);
+        // A piece that is missing altogether was encroached, too, by whichever vertex.
+        if (r.by_vertex && r.after_original && (r.parent == kNone || records_[r.parent].vertex != kNone)) check(ClaimId::encroaching_vertex, density, r);
         if (r.lemma_case != 0 && r.parent != kNone) check(ClaimId::lemma_5_2, density - lfs[r.parent] / r.nearest, r);
     }
 }
