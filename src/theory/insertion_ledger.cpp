@@ -221,7 +221,8 @@ void InsertionLedger::take_boundary(Record& r, const PickEvent& e) {
     r.by_vertex = by_vertex;
     if (by_vertex) r.direct = false;
     if (r.parent == kNone) {
-        if (!by_vertex) check(ClaimId::parent, 0, r);
+        // Lattice seeds split boundaries for size with nobody responsible.
+        if (!by_vertex && e.reason != InsertionReason::boundary_by_size) check(ClaimId::parent, 0, r);
         return;
     }
     const Record& p = records_[r.parent];
