@@ -77,6 +77,35 @@ bool share_a_file(const fs::path& a, const fs::path& b) {
     return false;
 }
 
+Mode read_mode(const std::string& text) {
+    if (text == "practical") return Mode::practical;
+    if (text == "certified") return Mode::certified;
+    throw CLI::ValidationError("--mode", fmt::format("must be practical or certified, not '{}'", text));
+}
+
+/// The paper's constants, and the mode, which has its own defaults for two goals (they hold where the goal is not given).
+void add_paper_flags(CLI::App& command, MeshOptions& options, const CLI::Option* ratio, const CLI::Option* angle) {
+    command.add_option_function<std::string>(
+        "--mode", [&options](const std::string& text) { options.mode = read_mode(text); },
+        "certified: constants for which the paper proves its claims, each checked on the run; it then judges slivers by sigma0")
+        ->type_name("practical|certified")->default_str("practical");
+    command.add_option("--delta", options.paper.delta, fmt::format("radius of a picking region over the circumradius (default: {}; certified: {})", kPracticalDelta, kCertifiedDelta))
+        ->type_name("DELTA");
+    command.add_option("--b", options.paper.b, fmt::format("certified: new slivers below b circumradii of what was split are avoided (default: {})", kCertifiedB))->type_name("B");
+    const CLI::Option* rho = command.add_option("--rho0", options.quality.max_radius_edge_ratio,
+                                                fmt::format("the paper's name of --max-radius-edge (default in certified mode: {})", kCertifiedRadiusEdgeRatio))
+        ->type_name("RATIO");
+    command.add_option("--sigma0", options.paper.sigma0, fmt::format("certified: slivers have volume / shortest edge^3 below this (default: {})", kCertifiedSigma))
+        ->type_name("SIGMA");
+    command.add_flag("--invariants", options.invariants, "report what the paper claims of the insertions, and what they did");
+    command.parse_complete_callback([&options, ratio, angle, rho] {
+        if (options.mode != Mode::certified) return;
+        const MeshOptions certified = certified_options();
+        if (ratio->count() == 0 && rho->count() == 0) options.quality.max_radius_edge_ratio = certified.quality.max_radius_edge_ratio;
+        if (angle->count() == 0) options.quality.min_dihedral_angle_deg = certified.quality.min_dihedral_angle_deg;
+    });
+}
+
 }  // namespace
 
 void add_coplanar_tolerance_flag(CLI::App& command, MeshOptions& options) {
@@ -88,9 +117,9 @@ void add_coplanar_tolerance_flag(CLI::App& command, MeshOptions& options) {
 void add_mesh_flags(CLI::App& command, MeshOptions& options) {
     command.add_option("--size", options.size.edge_length, "target edge length, in input units (default: none)")->type_name("H");
     command.add_option("--max-volume", options.size.max_volume, "bound on the volume of every tetrahedron (default: none)")->type_name("V");
-    command.add_option("--max-radius-edge", options.quality.max_radius_edge_ratio, "bound on circumradius / shortest edge of every tetrahedron")
+    const CLI::Option* ratio = command.add_option("--max-radius-edge", options.quality.max_radius_edge_ratio, "bound on circumradius / shortest edge of every tetrahedron")
         ->type_name("RATIO")->capture_default_str();
-    command.add_option("--min-dihedral", options.quality.min_dihedral_angle_deg, "least dihedral angle, in degrees; 0 ignores slivers")
+    const CLI::Option* angle = command.add_option("--min-dihedral", options.quality.min_dihedral_angle_deg, "least dihedral angle, in degrees; 0 ignores slivers")
         ->type_name("DEG")->capture_default_str();
     command.add_option_function<std::string>(
         "--seeding",
@@ -100,6 +129,7 @@ void add_mesh_flags(CLI::App& command, MeshOptions& options) {
         },
         "start from a lattice inside, where a size is asked for: fewer vertices for the same size")
         ->type_name("auto|off")->default_str("auto");
+    add_paper_flags(command, options, ratio, angle);
     add_coplanar_tolerance_flag(command, options);
     command.add_option_function<std::string>(
         "--seed", [&options](const std::string& text) { options.seed = read_count(text, "--seed"); },

@@ -53,6 +53,11 @@ Json json_header(const std::string& command, const std::string& input) {
 
 Json to_json(const MeshOptions& options) {
     Json json;
+    json["mode"] = options.mode == Mode::certified ? "certified" : "practical";
+    json["delta"] = or_null(options.paper.delta);
+    json["b"] = or_null(options.paper.b);
+    json["sigma0"] = or_null(options.paper.sigma0);
+    json["invariants"] = options.invariants;
     json["max_radius_edge_ratio"] = options.quality.max_radius_edge_ratio;
     json["min_dihedral_angle_deg"] = options.quality.min_dihedral_angle_deg;
     json["edge_length"] = or_null(options.size.edge_length);
@@ -116,6 +121,31 @@ Json to_json(const Certificate& certificate) {
         regions.push_back({{"region", region.region}, {"tets", region.tets}, {"volume", region.volume}, {"plc_volume", or_null(region.plc_volume)}});
     Json json = {{"proven", certificate.proven()}, {"claims", std::move(claims)}, {"regions", std::move(regions)}};
     json["shape"] = {{"all", to_json(certificate.all)}, {"interior", to_json(certificate.interior)}, {"boundary", to_json(certificate.boundary)}};
+    return json;
+}
+
+Json to_json(const InvariantReport& report) {
+    Json claims = Json::array();
+    for (const InvariantClaim& claim : report.claims)
+        claims.push_back({{"name", claim.name}, {"statement", claim.statement}, {"relation", claim.at_least ? ">=" : "<="}, {"bound", claim.bound},
+                          {"worst", claim.worst}, {"events", claim.events}, {"violations", claim.violations}, {"witness", claim.witness},
+                          {"where", claim.witness.empty() ? Json(nullptr) : to_json(claim.where)}});
+    Json json;
+    json["delta"] = report.delta;
+    json["b"] = report.b;
+    json["rho0"] = report.rho0;
+    json["sigma0"] = report.sigma0;
+    json["log10_existence_sigma0"] = report.log10_existence_sigma0;
+    json["d1"] = report.d1;
+    json["d2"] = report.d2;
+    json["d3"] = report.d3;
+    json["original_edge"] = report.original_edge;
+    json["shortest_edge"] = report.shortest_edge;
+    json["original_vertices"] = report.original_vertices;
+    json["almost_good_vertices"] = report.almost_good_vertices;
+    json["final_vertices"] = report.final_vertices;
+    json["violations"] = report.violations();
+    json["claims"] = std::move(claims);
     return json;
 }
 

@@ -9,6 +9,7 @@
 #include "wellmesh/certificate.hpp"
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/error.hpp"
+#include "wellmesh/invariants.hpp"
 #include "wellmesh/options.hpp"
 #include "wellmesh/result.hpp"
 
@@ -23,6 +24,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json to_json(const std::vector<AskedAchieved>& goals);
 [[nodiscard]] Json to_json(const Certificate& certificate);
 [[nodiscard]] Json to_json(const ShapeStatistics& statistics);
+[[nodiscard]] Json to_json(const InvariantReport& report);
 [[nodiscard]] Json to_json(const MeshStatistics& statistics);
 [[nodiscard]] Json to_json(const std::vector<StageTime>& stages);
 [[nodiscard]] Json to_json(const Diagnosis& diagnosis);

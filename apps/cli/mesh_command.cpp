@@ -53,7 +53,8 @@ bool goals_met(const MeshResult& result) {
 std::string render(const MeshResult& result, const std::vector<StageTime>& stages, const std::vector<std::filesystem::path>& files) {
     std::string text = fmt::format("{} vertices, {} tetrahedra: {}\n\n", result.mesh.vertices.size(), result.mesh.tets.size(),
                                    to_string(result.termination));
-    for (const std::string& part : {render_goals(result.goals), render_claims(result.certificate), render_shape(result.certificate),
+    for (const std::string& part : {render_goals(result.goals), render_claims(result.certificate),
+                                    result.invariants ? render_invariants(*result.invariants) : std::string(), render_shape(result.certificate),
                                     render_regions(result.certificate), render_stages(stages)})
         if (!part.empty()) text += part + '\n';
     // Whoever checks the file against its input must allow what the input's own rounding did.
@@ -76,6 +77,7 @@ Json report(const MeshCommand& arguments, const MeshResult& result, const std::v
     json["tets"] = result.mesh.tets.size();
     json["goals"] = to_json(result.goals);
     json["certificate"] = to_json(result.certificate);
+    if (result.invariants) json["invariants"] = to_json(*result.invariants);
     json["statistics"] = to_json(result.statistics);
     json["timings"] = to_json(stages);
     json["peak_memory_bytes"] = peak_memory_bytes();

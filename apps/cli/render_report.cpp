@@ -119,6 +119,22 @@ std::string render_histogram(const ShapeStatistics& statistics) {
     return "Smallest dihedral angle of each tetrahedron\n" + table.str();
 }
 
+std::string render_invariants(const InvariantReport& report) {
+    TextTable table({{"claim"}, {"bound", Align::right}, {"worst", Align::right}, {"events", Align::right}, {"violations", Align::right}, {"statement"}});
+    std::string witnesses;
+    for (const InvariantClaim& claim : report.claims) {
+        const bool bounded = std::isfinite(claim.bound);
+        table.add({claim.name, bounded ? fmt::format("{} {}", claim.at_least ? ">=" : "<=", number(claim.bound)) : "none", claim.events > 0 ? number(claim.worst) : "-",
+                   count(claim.events), count(claim.violations), claim.statement});
+        if (claim.violations > 0) witnesses += fmt::format("  {}: {}\n", claim.name, claim.witness);
+    }
+    std::string text = fmt::format("The paper's claims on the refinement's insertions: delta {:g}, b {:g}, rho0 {:g}, sigma0 {:g}", report.delta, report.b, report.rho0, report.sigma0);
+    if (std::isfinite(report.log10_existence_sigma0)) text += fmt::format(" (the existence theorem's own: 10^{:.0f})", report.log10_existence_sigma0);
+    text += '\n' + table.str();
+    if (!witnesses.empty()) text += "First violations\n" + witnesses;
+    return text;
+}
+
 std::string render_regions(const Certificate& certificate) {
     if (certificate.regions.empty()) return {};
     TextTable table({{"region", Align::right}, {"tetrahedra", Align::right}, {"volume", Align::right}, {"input's volume", Align::right}, {"relative difference", Align::right}});

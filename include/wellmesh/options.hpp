@@ -10,6 +10,19 @@
 
 namespace wellmesh {
 
+/// practical: outside the paper's theorem, which its defaults exceed by far. certified: constants for which every inequality of the paper
+/// holds, its own definition of a sliver, and every claim checked on the run's insertions; nothing but what the paper describes (docs/theory.md).
+enum class Mode { practical, certified };
+
+/// Constants of the paper. Empty: the mode's own, below.
+struct PaperConstants {
+    std::optional<double> delta{};   ///< radius of a picking region over the circumradius
+    std::optional<double> b{};       ///< certified: new slivers below b circumradii of what was split are avoided
+    std::optional<double> sigma0{};  ///< certified: slivers have volume / shortest edge^3 below this
+};
+inline constexpr double kPracticalDelta = 0.3;  ///< docs/decisions/0010
+inline constexpr double kCertifiedDelta = 0.05, kCertifiedB = 4.5, kCertifiedRadiusEdgeRatio = 20, kCertifiedSigma = 0.01;
+
 struct QualityGoals {
     /// Bound on circumradius / shortest edge of every tetrahedron. Below 2 there is no proof of termination.
     double max_radius_edge_ratio = 2.0;
@@ -34,6 +47,8 @@ struct Limits {
 enum class Seeding : std::uint8_t { automatic, off };
 
 struct MeshOptions {
+    Mode mode = Mode::practical;
+    PaperConstants paper{};
     QualityGoals quality{};
     SizeGoals size{};
     Limits limits{};
@@ -42,7 +57,19 @@ struct MeshOptions {
     std::optional<double> coplanar_tolerance{};
     /// Input, options and seed fix the output bytes (time limits and cancellation apart).
     std::uint64_t seed = 0;
+    /// Keep account of the refinement's insertions and report the paper's claims on them. Always so in certified mode, where a violated
+    /// claim is an internal error; in practical mode violations are counted.
+    bool invariants = false;
 };
+
+/// Certified mode with its defaults: radius-edge ratio kCertifiedRadiusEdgeRatio, no goal for the dihedral angle.
+[[nodiscard]] inline MeshOptions certified_options() {
+    MeshOptions options;
+    options.mode = Mode::certified;
+    options.quality.max_radius_edge_ratio = kCertifiedRadiusEdgeRatio;
+    options.quality.min_dihedral_angle_deg = 0;
+    return options;
+}
 
 /// All that is wrong with `options`, one sentence a field with its valid range; empty when nothing is.
 [[nodiscard]] std::vector<std::string> check(const MeshOptions& options);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "wellmesh/certificate.hpp"
 #include "wellmesh/error.hpp"
+#include "wellmesh/invariants.hpp"
 #include "wellmesh/tet_mesh.hpp"
 
 namespace wellmesh {
@@ -48,6 +50,7 @@ struct MeshResult {
     Certificate certificate;
     MeshStatistics statistics;
     std::vector<AskedAchieved> goals;
+    std::optional<InvariantReport> invariants{};  ///< if MeshOptions ask for it
 };
 
 }  // namespace wellmesh

@@ -13,11 +13,6 @@
 namespace wellmesh {
 namespace {
 
-/// Splits avoid the exact centre: on symmetric input midpoints make cospherical structures that are split for ever.
-constexpr double kJitter = 0.05;
-/// Radius of a picking region relative to the circumradius (half the length of a subsegment) [LiTeng01, 2.3].
-constexpr double kPickingRadius = 0.3;
-
 /// Pieces of a segment never get shorter than this part of it unless splits chase each other about an acute angle.
 constexpr double kShortestPiece = 1e-9;
 
@@ -111,11 +106,50 @@ void BoundaryRefiner::inserted(VertexId v) {
         for (const VertexId w : mesh_.tets().corners(t))
             if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
     mesh_.info(v).insertion_length = std::sqrt(shortest);
+    const InsertionReason reason = mesh_.info(v).reason;
+    if (reason == InsertionReason::encroachment || reason == InsertionReason::recovery)
+        shortest_for_conformity_ = std::min(shortest_for_conformity_, mesh_.info(v).insertion_length);
     enqueue_encroached(mesh_.triangulation().new_tets());
     if (on_insert) on_insert(v);
 }
 
 // ------------------------------------------------------------------------------------------------ splits
+
+double distance_to_nearest(const ConformingMesh& mesh, const Cavity& cavity) {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const BoundaryFace& b : cavity.boundary)
+        for (const VertexId v : mesh.tets().face_corners(b.inside))
+            if (v != kInfiniteVertex) shortest = std::min(shortest, squared_distance(cavity.point, mesh.point(v)));
+    return std::sqrt(shortest);
+}
+
+/// @pre cavity_ is that of the point to be inserted, from the picking region of an element of this circumradius.
+bool BoundaryRefiner::refuses(const SplitRequest& request, double radius) {
+    const bool for_quality = request.reason == InsertionReason::boundary_by_radius_edge || request.reason == InsertionReason::boundary_by_sliver;
+    // Spheres of what is split for quality are empty, so the first comparison settles nearly all.
+    const double allowed = shortest_allowed(reference_edge);
+    if (!for_quality || (1 - rules.delta) * radius >= allowed || distance_to_nearest(mesh_, cavity_) >= allowed) return false;
+    ++refused_;
+    return true;
+}
+
+template <class... Corners>
+std::uint32_t BoundaryRefiner::record(const SplitRequest& request, VertexId v, const Vec3& point, double nearest, bool sliver_free, const Vec3& centre, double radius,
+                                      Corners... corners) {
+    if (!recorder) return PickEvent::kNone;
+    PickEvent e;
+    e.reason = request.reason;
+    e.element = {sizeof...(Corners), {corners...}, centre, radius};
+    e.point = point;
+    e.vertex = v;
+    e.rejected = request.rejected;
+    if (request.rejected == PickEvent::kNone) e.parent = request.parent;
+    e.nearest = nearest;
+    e.sliver_free = sliver_free;
+    e.projection_depth = request.projection_depth;
+    e.outside_rules = request.outside_rules;
+    return recorder->on_pick(e);
+}
 
 double BoundaryRefiner::segment_length(SegmentId s) const {
     const auto& ends = mesh_.plc().segments[s.index()].ends;
@@ -128,28 +162,32 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const 
     const Placement where = Placement::on_segment(s);
     const Vec3 middle = 0.5 * (a + b);
     Triangulation& tri = mesh_.triangulation();
-    const double jitter = kJitter * (2 * unit_double(mix64(key, 0)) - 1);
+    const double jitter = rules.jitter * (2 * unit_double(mix64(key, 0)) - 1);
     const auto found = [&](unsigned k) {
-        const double at = k == 0 ? jitter : kPickingRadius * picking_point(1, key, k).x;
+        const double at = k == 0 ? jitter : rules.delta * picking_point(1, key, k).x;
         const Vec3 p = project_to_segment(mesh_.plc(), s.segment, middle + (at / 2) * (b - a));
         return p != a && p != b && tri.find_conflict_cavity(p, tri.tet_of(s.a), cavity_);
     };
+    const double radius = distance(a, b) / 2;
     unsigned chosen = 0;
+    bool sliver_free = !judge;
     if (judge)
-        for (unsigned k = 0; k < std::max(candidates / 4, 1U); ++k)
-            if (found(k) && judge(cavity_, where)) {
+        for (unsigned k = 0; k < std::max(candidates / 4, 1U) && !sliver_free; ++k)
+            if (found(k) && judge(cavity_, where, radius)) {
                 chosen = k;
-                break;
+                sliver_free = true;
             }
     if (distance(a, b) < kShortestPiece * segment_length(s.segment) || !found(chosen))
         throw MeshError(ErrorCode::budget_exhausted, guard_.stage(),
                         fmt::format("segment {} can't be split any further: its pieces have shrunk to {} near ({}, {}, {})",
                                     s.segment.value() + 1, distance(a, b), middle.x, middle.y, middle.z),
                         {{EntityKind::segment, s.segment.value() + 1, middle}});
+    if (refuses(request, radius)) return SplitOutcome::refused;
     const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::segment, request.reason, s.segment.value(), request.parent, 0});
     for (const Subsegment& half : {Subsegment{s.a, v, s.segment}, Subsegment{v, s.b, s.segment}})
         if (!mesh_.find_subsegment(half).valid()) segments_.push_back({half, VertexId{}});
     inserted(v);
+    record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, sliver_free, middle, radius, s.a, s.b);
     return SplitOutcome::inserted;
 }
 
@@ -167,7 +205,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
     Triangulation& tri = mesh_.triangulation();
     const auto found = [&](unsigned k) {
         const Vec3 unit = picking_point(2, key, k == 0 ? 1 : k);
-        const double r = (k == 0 ? kJitter : kPickingRadius) * radius;
+        const double r = (k == 0 ? rules.jitter : rules.delta) * radius;
         const Vec3 p = project_to_facet(facet, centre + (r * unit.x) * facet.axis_u + (r * unit.y) * facet.axis_v);
         return tri.find_conflict_cavity(p, face.tet(), cavity_);
     };
@@ -176,28 +214,37 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
     find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
     if (!encroached_segments_.empty()) {
         const std::vector<Subsegment> targets = encroached_segments_;
-        for (const Subsegment& target : targets)
-            if (mesh_.find_subsegment(target).valid()) split(target, request);
-        return SplitOutcome::deferred;
+        SplitRequest passed = request;
+        passed.rejected = record(request, VertexId{}, cavity_.point, recorder ? distance_to_nearest(mesh_, cavity_) : 0, true, centre, radius, s.corners[0], s.corners[1],
+                                 s.corners[2]);
+        passed.projection_depth = 0;
+        bool refused = false;
+        for (const Subsegment& target : targets) {
+            refused = mesh_.find_subsegment(target).valid() && split(target, passed) == SplitOutcome::refused;
+            if (rules.strict || refused) break;
+        }
+        return refused ? SplitOutcome::refused : SplitOutcome::deferred;
     }
     unsigned chosen = 0;
-    if (judge && !judge(cavity_, where))
-        for (unsigned k = 1; k < std::max(candidates / 2, 1U); ++k) {
-            if (!found(k)) continue;
-            find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
-            if (encroached_segments_.empty() && judge(cavity_, where)) {
-                chosen = k;
-                break;
-            }
+    bool sliver_free = !judge || judge(cavity_, where, radius);
+    for (unsigned k = 1; k < std::max(candidates / 2, 1U) && !sliver_free; ++k) {
+        if (!found(k)) continue;
+        find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+        if (encroached_segments_.empty() && judge(cavity_, where, radius)) {
+            chosen = k;
+            sliver_free = true;
         }
+    }
     if (!found(chosen)) return SplitOutcome::gone;
     if (!mesh_.holds_carrier(cavity_, where)) {
         // Rounding or a facet that is not Gabriel yet put the centre outside the facet: the middle of the triangle never is.
         const Vec3 p = project_to_facet(facet, a + (1.0 / 3) * ((b - a) + (c - a)));
         if (!tri.find_conflict_cavity(p, face.tet(), cavity_)) return SplitOutcome::gone;
     }
+    if (refuses(request, radius)) return SplitOutcome::refused;
     const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::facet, request.reason, s.facet.value(), request.parent, 0});
     inserted(v);
+    record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, sliver_free, centre, radius, s.corners[0], s.corners[1], s.corners[2]);
     return SplitOutcome::inserted;
 }
 

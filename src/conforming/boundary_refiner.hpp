@@ -3,12 +3,15 @@
 // every facet a union of faces with empty equatorial spheres (the Gabriel property) [Shewchuk98].
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
+#include "conforming/insertion_recorder.hpp"
 #include "core/run_guard.hpp"
 
 namespace wellmesh {
@@ -17,6 +20,21 @@ namespace wellmesh {
 struct SplitRequest {
     InsertionReason reason = InsertionReason::encroachment;
     VertexId parent{};  ///< the encroaching vertex, or the one responsible for the tetrahedron whose centre encroaches
+    std::uint32_t rejected = PickEvent::kNone;  ///< the recorder's number of that centre
+    double projection_depth = 0;                ///< as in PickEvent
+    bool outside_rules = false;                 ///< as in PickEvent
+};
+
+/// How points are picked. The defaults are the practical mode's (docs/decisions/0010).
+struct PickingRules {
+    /// Radius of a picking region relative to the circumradius (half the length of a subsegment) [LiTeng01, 2.3].
+    double delta = 0.3;
+    /// Splits avoid the exact centre by up to this part of the radius: on symmetric input midpoints make cospherical structures that are
+    /// split for ever. 0 where the paper's inequalities prove the end and want circumcentres.
+    double jitter = 0.05;
+    /// The paper to the letter: one encroached subsegment at a time, since the first split may encroach the next, and slivers avoided by
+    /// every split.
+    bool strict = false;
 };
 
 class BoundaryRefiner {
@@ -28,9 +46,15 @@ public:
     /// Called after recovery has found all cells anew (tetrahedra may have changed cells).
     std::function<void()> on_repair{};
     /// Accepts or rejects a candidate point of a picking region; the first accepted one is used, or the centre. Empty: the centre always.
-    using Judge = std::function<bool(const Cavity&, const Placement&)>;  ///< true: the star of this point holds no new small sliver
+    /// Given the radius of the element's own sphere. True: the star of this point holds no new small sliver.
+    using Judge = std::function<bool(const Cavity&, const Placement&, double radius)>;
     Judge judge{};
     unsigned candidates = 1;
+    PickingRules rules{};
+    /// Told of every point that is picked or rejected; none: nobody keeps account.
+    InsertionRecorder* recorder = nullptr;
+    /// Length, in input units, that Theorem 4.2 compares with: splits for quality that would make an edge shorter than its bound are refused. 0: none are.
+    double reference_edge = 0;
 
     /// Makes every segment a chain of edges and every facet a union of faces, then finds the cell of every tetrahedron.
     /// @throws MeshError{budget_exhausted, cancelled, unsupported_acute}
@@ -51,12 +75,16 @@ public:
     /// Subsegments and subfaces that cavity.point would encroach, except on its own carrier.
     void find_encroached(const Cavity& cavity, const Placement& where, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
 
-    enum class SplitOutcome { inserted, deferred, gone };
+    enum class SplitOutcome { inserted, deferred, gone, refused };
     SplitOutcome split(const Subsegment& s, const SplitRequest& request);
     /// Deferred: a subsegment had to be split instead.
     SplitOutcome split(const Subface& s, const SplitRequest& request);
 
     [[nodiscard]] std::uint64_t seed() const { return seed_; }
+    [[nodiscard]] std::uint64_t refused() const { return refused_; }
+    /// Edges shorter than this are not made for quality: (1 - delta) / 4 of the reference [LiTeng01, Theorem 4.2]. The theorem does not know
+    /// that vertices may encroach other parts of the boundary; the splits that this needs may be shorter, and lower the reference.
+    [[nodiscard]] double shortest_allowed(double reference) const { return (1 - rules.delta) / 4 * std::min(reference, shortest_for_conformity_); }
 
 private:
     struct WaitingSegment { Subsegment s; VertexId encroacher; };
@@ -70,6 +98,9 @@ private:
     void refresh_cells();
     void drain_segments();
     void inserted(VertexId v);
+    bool refuses(const SplitRequest& request, double radius);
+    template <class... Corners>
+    std::uint32_t record(const SplitRequest& request, VertexId v, const Vec3& point, double nearest, bool sliver_free, const Vec3& centre, double radius, Corners... corners);
     void poll_or_throw();
     void queue_chain(SegmentId s);
     [[nodiscard]] double segment_length(SegmentId s) const;
@@ -83,11 +114,16 @@ private:
     Cavity cavity_;
     std::vector<Subsegment> encroached_segments_;
     std::vector<Subface> encroached_faces_;
+    std::uint64_t refused_ = 0;
+    double shortest_for_conformity_ = std::numeric_limits<double>::infinity();
     bool cells_stale_ = false;  // facets were recovered since cells were last found
 };
 
 /// Finds the cell of every tetrahedron by flooding from the labelled faces. @throws MeshError{internal_invariant} if the surface leaks.
 void classify_cells(ConformingMesh& mesh);
+
+/// Distance from cavity.point to the nearest vertex, which is one of the cavity's: nearest neighbours are Delaunay neighbours.
+[[nodiscard]] double distance_to_nearest(const ConformingMesh& mesh, const Cavity& cavity);
 
 /// Point k (1, 2, ...) of a low-discrepancy sequence in the unit ball, disk (z = 0) or interval (y = z = 0); point 0 is the centre.
 /// No trigonometry: the same on every platform.

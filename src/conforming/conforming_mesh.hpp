@@ -111,6 +111,11 @@ public:
     /// Would this insertion destroy subfaces or subsegments that don't contain the point? @pre cavity is the last one found.
     [[nodiscard]] bool would_break(const Cavity& cavity, const Placement& where);
 
+    /// Finds out what an insertion would do, for changes_sides(). @pre cavity is the last one found.
+    void plan_insertion(const Cavity& cavity, const Placement& where) { plan(cavity, where); }
+    /// Will the tetrahedron on this face of the planned cavity's boundary be a flat one that belongs to the cell across the face?
+    [[nodiscard]] bool changes_sides(std::size_t boundary_face) const { return captured_[boundary_face].swapped; }
+
     // --- labels, for recovery
     void label_edge(VertexId a, VertexId b, SegmentId s);  ///< on all tetrahedra around the edge; an invalid s takes the label away. Does nothing if there is no such edge
     void label_face(TetFace tf, FacetId f);                ///< on both sides; an invalid f takes the label away

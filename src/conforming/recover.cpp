@@ -60,7 +60,7 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
             const ValidFacet& facet = mesh_.plc().facets[f.index()];
             const std::uint64_t key = mix64(seed_, mix64(m.corners[0].value(), mix64(m.corners[1].value(), m.corners[2].value())));
             const Vec3 unit = picking_point(2, key, 1);
-            const Vec3 wanted = project_to_facet(facet, centre + (0.05 * radius * unit.x) * facet.axis_u + (0.05 * radius * unit.y) * facet.axis_v);
+            const Vec3 wanted = project_to_facet(facet, centre + (rules.jitter * radius * unit.x) * facet.axis_u + (rules.jitter * radius * unit.y) * facet.axis_v);
             poll_or_throw();
             taken.push_back(centre);
             try_insert_on_facet(f, wanted, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
@@ -80,7 +80,16 @@ void BoundaryRefiner::try_insert_on_facet(FacetId f, const Vec3& wanted, TetId n
             if (mesh_.find_subsegment(target).valid()) split(target, request);
         return;
     }
-    inserted(mesh_.insert(cavity_, where, {CarrierKind::facet, request.reason, f.value(), request.parent, 0}));
+    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::facet, request.reason, f.value(), request.parent, 0});
+    inserted(v);
+    if (!recorder) return;
+    PickEvent e;
+    e.reason = request.reason;
+    e.point = mesh_.point(v);
+    e.vertex = v;
+    e.parent = request.parent;
+    e.nearest = mesh_.info(v).insertion_length;
+    recorder->on_pick(e);
 }
 
 void BoundaryRefiner::repair_broken() {

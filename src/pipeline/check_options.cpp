@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pipeline/theory_run.hpp"
 #include "wellmesh/options.hpp"
 
 namespace wellmesh {
@@ -36,6 +37,8 @@ std::vector<std::string> check(const MeshOptions& options) {
     if (const auto n = options.limits.max_vertices) need(*n >= 4, "max vertices", "at least 4", static_cast<double>(*n));
     if (const auto t = options.limits.time) need(t->count() > 0, "time limit", "above 0 milliseconds", static_cast<double>(t->count()));
     if (const auto d = options.coplanar_tolerance) need(*d >= 0 && *d <= kLargest, "coplanar tolerance", "a finite number, at least 0", *d);
+    const std::vector<std::string> constants = check_paper_constants(options);
+    problems.insert(problems.end(), constants.begin(), constants.end());
     return problems;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "core/run_guard.hpp"
 #include "pipeline/extract_mesh.hpp"
 #include "pipeline/report_goals.hpp"
+#include "pipeline/theory_run.hpp"
 #include "predicates/predicates.hpp"
 #include "refinement/lattice_seeding.hpp"
 #include "refinement/refine.hpp"
@@ -66,6 +68,7 @@ public:
         if (options_.quality.min_dihedral_angle_deg > 0) bounds.min_dihedral_angle_deg = options_.quality.min_dihedral_angle_deg;
         bounds.max_volume = options_.size.max_volume;
         bounds.stop = control_.stop;
+        if (options_.mode == Mode::certified) bounds.min_sigma = paper_constants(options_).sigma0;
         const double extent = input_extent(plc_);
         // Beyond the defaults only by what the input's own rounding did: the facets' tolerance, and the bend that it makes in the mesh.
         bounds.tolerance = std::max(bounds.tolerance, 4 * valid.coplanar_tolerance / extent);
@@ -74,6 +77,12 @@ public:
         result_.statistics.certificate_flat_angle_rad = bounds.flat_angle_rad;
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
         fail_if_refuted();
+        try {
+            judge_invariants(result_, options_);
+        } catch (const MeshError& e) {
+            if (!valid.acute_features.empty()) throw acute_failure(valid, e);  // the paper assumes that there are none
+            throw;
+        }
         report_goals(result_, options_, valid);
         result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
         return std::move(result_);
@@ -85,6 +94,7 @@ private:
         const bool acute = !valid.acute_features.empty();
         if (acute) guard_.set_ceiling(10 * valid.vertices.size() + 20'000);
         BoundaryRefiner boundary(mesh, guard_, options_.seed);
+        const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);
         const auto count = [&] {
             vertices_ = mesh.vertex_count();
             tets_ = 0;
@@ -97,13 +107,17 @@ private:
         });
         Refiner refiner(mesh, boundary, guard_, options_);
         refuse_hopeless(expected_vertices(valid, refiner.sizes()));
+        refiner.guard_edges();
+        if (options_.mode == Mode::certified) set_sliver_rule(refiner, options_);
         if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 300'000 + 4 * expected_vertices(valid, refiner.sizes()));
         if (const double theta = options_.quality.min_dihedral_angle_deg; theta > 0)
             refiner.set_sliver_cosine(std::cos(std::min(theta, kPickingAngleDeg) * (std::numbers::pi / 180)), kPickingCandidates);
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
-            if (options_.seeding == Seeding::automatic) LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
+            // The paper has no seeds: its original mesh is made by its own rules.
+            if (options_.seeding == Seeding::automatic && options_.mode == Mode::practical) LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
             verdict = refiner.refine();
+            finish_theory(recorder.get(), boundary, result_);
             count();
         });
         const double theta = options_.quality.min_dihedral_angle_deg;
@@ -115,7 +129,7 @@ private:
                 count();
             });
         result_.mesh = extract_mesh(mesh);
-        result_.statistics.guarded_insertions = refiner.statistics().guarded;
+        result_.statistics.guarded_insertions = refiner.refused();
         result_.termination = termination(verdict);
     }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/vec3_math.hpp"
+#include "pipeline/theory_run.hpp"
 #include "quality/tet_shape.hpp"
 #include "refinement/sizing.hpp"
 
@@ -58,6 +59,12 @@ void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc
         AskedAchieved dihedral{"min dihedral angle [deg]", theta, all.min_dihedral_angle_deg, all.min_dihedral_angle_deg >= theta, 0, {}};
         if (!dihedral.met) count_misses(result, dihedral, [&](const TetShape& s, std::int32_t) { return theta - s.min_dihedral_deg; });
         result.goals.push_back(dihedral);
+    }
+    if (options.mode == Mode::certified) {
+        const double sigma0 = paper_constants(options).sigma0;
+        AskedAchieved sigma{"min sigma V/L^3", sigma0, all.min_sigma, all.min_sigma >= sigma0, 0, {}};
+        if (!sigma.met) count_misses(result, sigma, [&](const TetShape& s, std::int32_t) { return sigma0 - s.sigma; });
+        result.goals.push_back(sigma);
     }
     if (options.size.edge_length) {
         const double h = *options.size.edge_length;

@@ -3,16 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "conforming/place_point.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 #include "quality/tet_shape.hpp"
+#include "refinement/circumsphere.hpp"
 
 namespace wellmesh {
 namespace {
 
-constexpr double kPickingRadius = 0.3;  // delta of the paper; docs/decisions/0010
 /// Candidates matter only where the tetrahedra that they make may stay: within this factor of the size bound.
 constexpr double kJudgeWithin = 1.5;
 /// Beyond this R/L the circumcentre in doubles is noise: the tetrahedron is split at a labelled face or at its longest edge.
@@ -28,10 +30,53 @@ Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guar
     rounding_ = 64 * largest * 0x1p-53;  // heights of a few ulp
     boundary_.on_insert = [this](VertexId) { enqueue(mesh_.triangulation().new_tets()); };
     boundary_.on_repair = [this] { enqueue_all(); };
-    boundary_.judge = [this](const Cavity& cavity, const Placement& where) { return !judging_ || star_is_good(cavity, where); };
+    boundary_.judge = [this](const Cavity& cavity, const Placement& where, double radius) { return !judging_ || accepts(cavity, where, radius); };
+}
+
+void Refiner::set_sliver_rule(const SliverRule& rule) {
+    sliver_rule_ = rule;
+    candidates_ = boundary_.candidates = rule.candidates;
+}
+
+void Refiner::guard_edges() {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
+        const TetId t{i};
+        if (!mesh_.tets().is_finite(t) || !mesh_.in_domain(t)) continue;
+        const auto& c = mesh_.tets().corners(t);
+        shortest = std::min(shortest, shortest_edge_squared(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3])));
+    }
+    shortest = std::sqrt(shortest);
+    reference_edge_.assign(sizes_.size(), shortest);
+    boundary_.reference_edge = shortest;
+    for (std::size_t c = 0; c < sizes_.size(); ++c) {
+        // A tetrahedron too large has at least the bound for circumradius, or that of the regular one of the bound's volume, R^3 = 27 V / (8 sqrt(3)).
+        // Its point makes edges of (1 - delta) R; on what its centre encroaches, sqrt(1/2) less, twice (Lemma 2.5).
+        const double radius = std::min(std::sqrt(sizes_[c].max_squared_circumradius), std::cbrt(27 / (8 * std::sqrt(3.0)) * sizes_[c].max_volume));
+        reference_edge_[c] = std::min(shortest, (1 - boundary_.rules.delta) / 2 * radius);
+        if (mesh_.is_filled(CellId{c})) boundary_.reference_edge = std::min(boundary_.reference_edge, reference_edge_[c]);
+    }
+}
+
+/// No tetrahedron is flat here: where rounding blurs the circumsphere it is computed exactly.
+Refiner::Fault Refiner::classify_strictly(TetId t, double& squared_badness) const {
+    const auto& k = mesh_.tets().corners(t);
+    const Vec3 &a = mesh_.point(k[0]), &b = mesh_.point(k[1]), &c = mesh_.point(k[2]), &d = mesh_.point(k[3]);
+    const Circumsphere sphere = careful_circumsphere(a, b, c, d);
+    const double squared_edge = shortest_edge_squared(a, b, c, d);
+    const CellSize& size = sizes_[mesh_.cell(t).index()];
+    squared_badness = sphere.radius * sphere.radius;
+    if (squared_badness > size.max_squared_circumradius || sphere.six_volumes > 6 * size.max_volume) return Fault::size;
+    squared_badness /= squared_edge;
+    if (!(squared_badness <= max_radius_edge_ * max_radius_edge_)) return Fault::radius_edge;
+    const double limit = 6 * sliver_rule_.sigma * squared_edge * std::sqrt(squared_edge);
+    if (!(sphere.six_volumes < limit)) return Fault::none;
+    squared_badness = limit / sphere.six_volumes;
+    return Fault::sliver;
 }
 
 Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
+    if (strict()) return classify_strictly(t, squared_badness);
     const auto& corners = mesh_.tets().corners(t);
     const Vec3 &a = mesh_.point(corners[0]), &b = mesh_.point(corners[1]), &c = mesh_.point(corners[2]), &d = mesh_.point(corners[3]);
     const Vec3 u = b - a, v = c - a, w = d - a;
@@ -68,6 +113,7 @@ void Refiner::enqueue(const std::vector<TetId>& tets) {
             case Fault::size: by_size_.push(t, mesh_.tets().corners(t), badness); break;
             case Fault::radius_edge:
             case Fault::flat: by_radius_edge_.push(t, mesh_.tets().corners(t), badness); break;
+            case Fault::sliver: by_sliver_.push(t, mesh_.tets().corners(t), badness); break;
         }
     }
 }
@@ -96,10 +142,58 @@ bool Refiner::star_is_good(const Cavity& cavity, const Placement& where) const {
     return true;
 }
 
-/// The vertex that Lemma 5.1 holds responsible: the younger end of the shortest edge, or for slivers the youngest vertex [LiTeng01].
+bool Refiner::star_has_small_sliver(const Cavity& cavity, const Placement& where, double radius) const {
+    if (where.carrier != CarrierKind::region) mesh_.plan_insertion(cavity, where);
+    for (std::size_t i = 0; i < cavity.boundary.size(); ++i) {
+        const BoundaryFace& b = cavity.boundary[i];
+        const bool changes_sides = where.carrier != CarrierKind::region && mesh_.changes_sides(i);
+        if (!mesh_.in_domain((changes_sides ? b.outside : b.inside).tet())) continue;
+        const auto c = mesh_.tets().face_corners(b.inside);
+        if (c[0] == kInfiniteVertex || c[1] == kInfiniteVertex || c[2] == kInfiniteVertex) continue;
+        const Vec3 &p = mesh_.point(c[0]), &q = mesh_.point(c[1]), &r = mesh_.point(c[2]);
+        const double squared_edge = shortest_edge_squared(p, q, r, cavity.point);
+        const double limit = 6 * sliver_rule_.sigma * squared_edge * std::sqrt(squared_edge);
+        if (!(six_volumes(p, q, r, cavity.point) < limit)) continue;
+        const Circumsphere sphere = careful_circumsphere(p, q, r, cavity.point);
+        if (sphere.radius < sliver_rule_.b * radius && sphere.radius * sphere.radius <= max_radius_edge_ * max_radius_edge_ * squared_edge) return true;
+    }
+    return false;
+}
+
+bool Refiner::accepts(const Cavity& cavity, const Placement& where, double radius) const {
+    return strict() ? !star_has_small_sliver(cavity, where, radius) : star_is_good(cavity, where);
+}
+
+std::size_t Refiner::more_urgent(InsertionReason reason) const {
+    const std::size_t boundary = boundary_.waiting();
+    if (reason == InsertionReason::size) return boundary;
+    return boundary + by_size_.size() + (reason == InsertionReason::sliver ? by_radius_edge_.size() : 0);
+}
+
+PickEvent Refiner::describe(TetId t, InsertionReason reason, const Vec3& centre, double radius) const {
+    PickEvent e;
+    e.reason = reason;
+    e.element = {4, mesh_.tets().corners(t), centre, radius};
+    e.point = centre;
+    e.parent = responsible_vertex(t, reason);
+    e.more_urgent = more_urgent(reason);
+    e.outside_rules = outside_rules_;
+    return e;
+}
+
+void Refiner::report_milestones() {
+    if (!by_size_.empty()) return;
+    if (!std::exchange(size_met_, true)) original_vertices_ = mesh_.vertex_slots();
+    if (!boundary_.recorder) return;
+    boundary_.recorder->on_milestone(InsertionRecorder::Milestone::size_met);
+    if (by_radius_edge_.empty()) boundary_.recorder->on_milestone(InsertionRecorder::Milestone::almost_good);
+}
+
+/// The vertex that Lemma 5.1 holds responsible: the younger end of the shortest edge, or for created slivers the youngest vertex [LiTeng01].
 VertexId Refiner::responsible_vertex(TetId t, InsertionReason reason) const {
     const auto& c = mesh_.tets().corners(t);
-    if (reason == InsertionReason::sliver) return *std::max_element(c.begin(), c.end());
+    const VertexId youngest = *std::max_element(c.begin(), c.end());
+    if (reason == InsertionReason::sliver && youngest.index() >= original_vertices_) return youngest;
     double shortest = 1e300;
     VertexId younger{};
     for (const auto& e : kEdgeCorners) {
@@ -118,23 +212,33 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
     Triangulation& tri = mesh_.triangulation();
     const VertexId parent = responsible_vertex(t, reason);
     ++statistics_.candidates;
-    if (judging_ && !star_is_good(cavity_, where)) {
+    bool sliver_free = !judging_ || accepts(cavity_, where, radius);
+    if (!sliver_free) {
         const auto& c = mesh_.tets().corners(t);
         const std::uint64_t key = mix64(boundary_.seed(), mix64(mix64(c[0].value(), c[1].value()), mix64(c[2].value(), c[3].value())));
-        bool found = false;
-        for (unsigned k = 1; k < candidates_ && !found; ++k) {
-            const Vec3 p = flush_to_exact_range(centre + (kPickingRadius * radius) * picking_point(3, key, k));
+        for (unsigned k = 1; k < candidates_ && !sliver_free; ++k) {
+            const Vec3 p = flush_to_exact_range(centre + (boundary_.rules.delta * radius) * picking_point(3, key, k));
             ++statistics_.candidates;
             if (!tri.find_conflict_cavity(p, t, cavity_) || mesh_.cell(cavity_.tets[0]) != cell) continue;
-            if (!star_is_good(cavity_, where)) continue;
+            if (!accepts(cavity_, where, radius)) continue;
             boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
-            found = encroached_segments_.empty() && encroached_faces_.empty();
+            sliver_free = encroached_segments_.empty() && encroached_faces_.empty();
         }
-        if (!found) {
+        if (!sliver_free) {
             ++statistics_.fallbacks;
             if (!tri.find_conflict_cavity(centre, t, cavity_)) return false;
         }
     }
+    if (reason != InsertionReason::size && !reference_edge_.empty()) {
+        const double allowed = boundary_.shortest_allowed(reference_edge_[cell.index()]);
+        // The sphere is empty, so the first comparison settles nearly all.
+        if ((1 - boundary_.rules.delta) * radius < allowed && distance_to_nearest(mesh_, cavity_) < allowed) {
+            ++statistics_.guarded;
+            return false;
+        }
+    }
+    PickEvent event;
+    if (boundary_.recorder) event = describe(t, reason, centre, radius);
     const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::region, reason, cell.value(), parent, 0});
     ++statistics_.insertions;
     double shortest = 1e300;
@@ -142,13 +246,21 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
         for (const VertexId w : mesh_.tets().corners(s))
             if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
     mesh_.info(v).insertion_length = std::sqrt(shortest);
+    if (boundary_.recorder) {
+        event.vertex = v;
+        event.point = mesh_.point(v);
+        event.nearest = mesh_.info(v).insertion_length;
+        event.sliver_free = sliver_free;
+        boundary_.recorder->on_pick(event);
+    }
     boundary_.enqueue_encroached(tri.new_tets());
     enqueue(tri.new_tets());
     return true;
 }
 
 void Refiner::split_flat(TetId t) {
-    const SplitRequest request{InsertionReason::boundary_by_radius_edge, responsible_vertex(t, InsertionReason::radius_edge)};
+    SplitRequest request{InsertionReason::boundary_by_radius_edge, responsible_vertex(t, InsertionReason::radius_edge)};
+    request.outside_rules = true;
     if (mesh_.has_labels(t))
         for (unsigned f = 0; f < 4; ++f) {
             const FacetId facet = mesh_.labels(t).facets[f];
@@ -179,16 +291,24 @@ void Refiner::split_flat(TetId t) {
         boundary_.split(Subface{encroached_faces_[0]}, request);
     } else {
         const bool was_judging = std::exchange(judging_, false);
+        outside_rules_ = true;
         insert_in_cell(t, p, std::sqrt(longest) / 2, InsertionReason::radius_edge);
+        outside_rules_ = false;
         judging_ = was_judging;
     }
 }
 
 void Refiner::process(TetId t, InsertionReason reason) {
     const auto corners = mesh_.tets().corners(t);
+    const Vec3 &a = mesh_.point(corners[0]), &b = mesh_.point(corners[1]), &c = mesh_.point(corners[2]), &d = mesh_.point(corners[3]);
+    if (strict()) {
+        judging_ = true;
+        const Circumsphere sphere = careful_circumsphere(a, b, c, d);
+        process_centre(t, reason, flush_to_exact_range(sphere.centre), sphere.radius);
+        return;
+    }
     double radius = 0;
-    const Vec3 centre = flush_to_exact_range(
-        circumcentre(mesh_.point(corners[0]), mesh_.point(corners[1]), mesh_.point(corners[2]), mesh_.point(corners[3]), &radius));
+    const Vec3 centre = flush_to_exact_range(circumcentre(a, b, c, d, &radius));
     const CellSize& size = sizes_[mesh_.cell(t).index()];
     judging_ = sliver_cosine_ < 1;
     if (judging_ && reason == InsertionReason::size) {
@@ -196,6 +316,11 @@ void Refiner::process(TetId t, InsertionReason reason) {
         const double bound = std::min(std::sqrt(size.max_squared_circumradius), 1.25 * std::cbrt(size.max_volume));
         judging_ = radius < kJudgeWithin * bound;
     }
+    process_centre(t, reason, centre, radius);
+}
+
+/// Inserts a point of the picking region, or splits what the centre encroaches.
+void Refiner::process_centre(TetId t, InsertionReason reason, const Vec3& centre, double radius) {
     const Placement where = Placement::in_cell(mesh_.cell(t));
     if (!mesh_.triangulation().find_conflict_cavity(centre, t, cavity_)) return;
     boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
@@ -203,7 +328,12 @@ void Refiner::process(TetId t, InsertionReason reason) {
         const InsertionReason why = reason == InsertionReason::size     ? InsertionReason::boundary_by_size
                                     : reason == InsertionReason::sliver ? InsertionReason::boundary_by_sliver
                                                                         : InsertionReason::boundary_by_radius_edge;
-        const SplitRequest request{why, responsible_vertex(t, reason)};
+        SplitRequest request{why, responsible_vertex(t, reason)};
+        if (boundary_.recorder) {
+            PickEvent event = describe(t, reason, centre, radius);
+            event.nearest = distance_to_nearest(mesh_, cavity_);
+            request.rejected = boundary_.recorder->on_pick(event);
+        }
         if (!encroached_segments_.empty()) {
             const Subsegment longest = *std::max_element(encroached_segments_.begin(), encroached_segments_.end(), [&](const Subsegment& x, const Subsegment& y) {
                 return squared_distance(mesh_.point(x.a), mesh_.point(x.b)) < squared_distance(mesh_.point(y.a), mesh_.point(y.b));
@@ -219,6 +349,7 @@ void Refiner::process(TetId t, InsertionReason reason) {
             };
             const Subface chosen = *std::max_element(encroached_faces_.begin(), encroached_faces_.end(),
                                                      [&](const Subface& x, const Subface& y) { return projection_depth(x) < projection_depth(y); });
+            request.projection_depth = projection_depth(chosen);
             boundary_.split(chosen, request);
         }
     } else if (mesh_.cell(cavity_.tets[0]) == mesh_.cell(t)) {
@@ -230,39 +361,32 @@ RunGuard::Verdict Refiner::refine() {
     enqueue_all();
     while (true) {
         if (!boundary_.idle()) {
-            judging_ = false;
+            judging_ = strict();
             boundary_.step();
             continue;
         }
-        if (by_size_.empty() && by_radius_edge_.empty()) return RunGuard::Verdict::go_on;
-        const RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), by_size_.size() + by_radius_edge_.size());
+        report_milestones();
+        if (by_size_.empty() && by_radius_edge_.empty() && by_sliver_.empty()) return RunGuard::Verdict::go_on;
+        const RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), by_size_.size() + by_radius_edge_.size() + by_sliver_.size());
         if (verdict != RunGuard::Verdict::go_on) {
             by_size_.clear();
             by_radius_edge_.clear();
+            by_sliver_.clear();
             return verdict;
         }
-        const bool size = !by_size_.empty();
-        const BadTetQueue::Entry e = size ? by_size_.pop() : by_radius_edge_.pop();
+        BadTetQueue& queue = !by_size_.empty() ? by_size_ : !by_radius_edge_.empty() ? by_radius_edge_ : by_sliver_;
+        const BadTetQueue::Entry e = queue.pop();
         if (!mesh_.tets().is_live(e.tet) || mesh_.tets().is_ghost(e.tet) || BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) != e.fingerprint) continue;
         if (!mesh_.in_domain(e.tet)) continue;
         double badness = 0;
         const Fault fault = classify(e.tet, badness);
         if (fault == Fault::none) continue;
-        if (fault == Fault::radius_edge || fault == Fault::flat) {
-            // Guard: the shortest edge that splitting could make is about the circumradius.
-            const auto& c = mesh_.tets().corners(e.tet);
-            const double squared_edge = shortest_edge_squared(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]));
-            if (squared_edge < shortest_allowed_ * shortest_allowed_) {
-                ++statistics_.guarded;
-                continue;
-            }
-        }
         const std::size_t vertices_before = mesh_.vertex_count();
         if (fault == Fault::flat) split_flat(e.tet);
-        else process(e.tet, size ? InsertionReason::size : InsertionReason::radius_edge);
+        else process(e.tet, fault == Fault::size ? InsertionReason::size : fault == Fault::sliver ? InsertionReason::sliver : InsertionReason::radius_edge);
         // It may have survived when the boundary was split instead: then it waits again. If nothing could be done it is given up.
         if (mesh_.vertex_count() != vertices_before && mesh_.tets().is_finite(e.tet) && BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) == e.fingerprint && mesh_.in_domain(e.tet)) {
-            (size ? by_size_ : by_radius_edge_).push(e.tet, mesh_.tets().corners(e.tet), badness);
+            queue.push(e.tet, mesh_.tets().corners(e.tet), badness);
         }
     }
 }
@@ -274,7 +398,7 @@ RunGuard::Verdict Refiner::split(TetId t, InsertionReason reason) {
         if (!mesh_.tets().is_finite(t) || BadTetQueue::fingerprint(mesh_.tets().corners(t)) != print || !mesh_.in_domain(t)) break;
         if (classify(t, badness) == Fault::flat) split_flat(t);
         else process(t, reason);
-        judging_ = false;
+        judging_ = strict();
         while (!boundary_.idle()) boundary_.step();
     }
     return refine();

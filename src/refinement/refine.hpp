@@ -18,7 +18,15 @@
 namespace wellmesh {
 
 struct RefineStatistics {
-    std::uint64_t insertions = 0, candidates = 0, fallbacks = 0, guarded = 0;
+    std::uint64_t insertions = 0, candidates = 0, fallbacks = 0;
+    std::uint64_t guarded = 0;  ///< points inside refused because of Theorem 4.2 (BoundaryRefiner counts its own)
+};
+
+/// The paper's slivers, instead of the dihedral angle: radius-edge ratio within its bound, but V / L^3 < sigma. A new one is small if its
+/// circumradius is below b times that of the element that was split [LiTeng01, 2.2 and 3.1].
+struct SliverRule {
+    double sigma = 0, b = 0;
+    unsigned candidates = 1;
 };
 
 class Refiner {
@@ -31,12 +39,17 @@ public:
     /// Splits tetrahedron t with the cascade of refine(), then restores size and radius-edge bound.
     RunGuard::Verdict split(TetId t, InsertionReason reason);
 
-    enum class Fault : std::uint8_t { none, size, radius_edge, flat };
+    /// Takes slivers for bad elements, too: refine() then ends when there are none. To be set before anything is refined, with strict rules.
+    void set_sliver_rule(const SliverRule& rule);
+
+    enum class Fault : std::uint8_t { none, size, radius_edge, flat, sliver };
     [[nodiscard]] Fault classify(TetId t, double& squared_badness) const;
     [[nodiscard]] const RefineStatistics& statistics() const { return statistics_; }
     [[nodiscard]] const std::vector<CellSize>& sizes() const { return sizes_; }
-    /// Edges shorter than this are never made for quality [LiTeng01, Theorem 4.2].
-    void set_shortest_edge(double length) { shortest_allowed_ = length; }
+    /// Sets the guard of Theorem 4.2: no edge below its bound is made for quality. The reference is the shortest edge of the mesh as it is now,
+    /// or, where less, the shortest that the size goals of a cell can ask for.
+    void guard_edges();
+    [[nodiscard]] std::uint64_t refused() const { return statistics_.guarded + boundary_.refused(); }
     [[nodiscard]] double max_radius_edge() const { return max_radius_edge_; }
     /// Cosine of the angle below which candidates are rejected; 1 or more: circumcentres only.
     void set_sliver_cosine(double cosine, unsigned candidates) {
@@ -50,7 +63,15 @@ private:
     void enqueue_all();
     void process(TetId t, InsertionReason reason);
     void split_flat(TetId t);
+    void process_centre(TetId t, InsertionReason reason, const Vec3& centre, double radius);
+    [[nodiscard]] Fault classify_strictly(TetId t, double& squared_badness) const;
+    [[nodiscard]] bool strict() const { return boundary_.rules.strict; }
     bool star_is_good(const Cavity& cavity, const Placement& where) const;
+    bool star_has_small_sliver(const Cavity& cavity, const Placement& where, double radius) const;
+    bool accepts(const Cavity& cavity, const Placement& where, double radius) const;
+    [[nodiscard]] PickEvent describe(TetId t, InsertionReason reason, const Vec3& centre, double radius) const;  ///< a rejected point, but for e_v
+    void report_milestones();
+    [[nodiscard]] std::size_t more_urgent(InsertionReason reason) const;
     [[nodiscard]] VertexId responsible_vertex(TetId t, InsertionReason reason) const;
     bool insert_in_cell(TetId t, const Vec3& centre, double radius, InsertionReason reason);
 
@@ -58,12 +79,17 @@ private:
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
     std::vector<CellSize> sizes_;
-    double max_radius_edge_, shortest_allowed_ = 0;
+    double max_radius_edge_;
+    std::vector<double> reference_edge_;  // of Theorem 4.2, a cell; empty: no guard
+    SliverRule sliver_rule_{};
+    std::size_t original_vertices_ = 0;  // of the mesh that met its size first: slivers among them are the paper's original ones
+    bool size_met_ = false;
+    bool outside_rules_ = false;         // the point to be inserted is no pick of the paper's
     double rounding_ = 0;  // input units: a tetrahedron this thin is flat
     double sliver_cosine_ = 2;
     unsigned candidates_ = 1;
     bool judging_ = false;
-    BadTetQueue by_size_, by_radius_edge_;
+    BadTetQueue by_size_, by_radius_edge_, by_sliver_;
     RefineStatistics statistics_;
     Cavity cavity_;
     std::vector<Subsegment> encroached_segments_;

@@ -71,6 +71,34 @@ TEST(mesh_command, example_has_no_acute_angle) {
     EXPECT_EQ(std::count_if(cells.begin(), cells.end(), [](const json& cell) { return cell.at("filled").get<bool>(); }), 2);
 }
 
+TEST(mesh_command, certified_mode_shows_that_every_claim_held) {
+    const ScratchFolder scratch;
+    const std::string cube = scratch.write("cube.off", kCubeOff);
+    const Outcome run = run_wellmesh({"mesh", cube, "--mode", "certified", "--size", "0.3", "--json", scratch.file("report.json"), "-o", scratch.file("out.mesh")});
+    ASSERT_EQ(run.status, 0) << run.out << run.err;
+    for (const char* part : {"The paper's claims", "10^-", "lemma_5_1_case_7", "theorem_5_2", "min sigma V/L^3"}) EXPECT_TRUE(contains(run.out, part)) << part;
+    const json report = json::parse(read_text(scratch.path() / "report.json"));
+    EXPECT_EQ(report.at("options").at("mode"), "certified");
+    EXPECT_EQ(report.at("options").at("max_radius_edge_ratio"), 20);
+    const json& invariants = report.at("invariants");
+    EXPECT_EQ(invariants.at("violations"), 0);
+    EXPECT_LT(invariants.at("log10_existence_sigma0").get<double>(), -1000);
+    EXPECT_GE(invariants.at("claims").size(), 29U);
+    for (const json& timing : report.at("timings")) EXPECT_NE(timing.at("stage"), "shape");
+    EXPECT_EQ(run_wellmesh({"check", scratch.file("out.mesh"), "--plc", cube, "--max-radius-edge", "20", "--min-sigma", "0.01"}).status, 0);
+}
+
+TEST(mesh_command, practical_mode_counts_the_claims_on_request) {
+    const ScratchFolder scratch;
+    const std::string cube = scratch.write("cube.off", kCubeOff);
+    const Outcome without = run_wellmesh({"mesh", cube, "--size", "0.3", "--json", "-"}), with = run_wellmesh({"mesh", cube, "--size", "0.3", "--invariants", "--json", "-"});
+    EXPECT_EQ(without.status, 0);
+    EXPECT_EQ(with.status, 0);
+    EXPECT_FALSE(json::parse(without.out).contains("invariants"));
+    EXPECT_EQ(json::parse(with.out).at("invariants").at("delta"), 0.3);
+    EXPECT_EQ(json::parse(with.out).at("vertices"), json::parse(without.out).at("vertices"));
+}
+
 TEST(mesh_command, json_on_standard_output_is_alone_there) {
     const ScratchFolder scratch;
     const std::string cube = scratch.write("cube.off", kCubeOff);

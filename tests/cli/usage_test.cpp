@@ -88,6 +88,8 @@ TEST(usage, values_out_of_range_are_refused_with_the_range) {
         {{"--seed", "-1"}, "whole number"}, {{"--seed", "18446744073709551616"}, "whole number"}, {{"--seed", ""}, "whole number"},
         {{"--time-limit", "0"}, "seconds"}, {{"--time-limit", "-1"}, "seconds"}, {{"--time-limit", "nan"}, "seconds"}, {{"--time-limit", "1e300"}, "seconds"},
         {{"--msh-version", "40"}, "41 or 22"},
+        {{"--mode", "proven"}, "practical or certified"}, {{"--delta", "1"}, "above 0 and below 1"}, {{"--delta", "nan"}, "above 0 and below 1"},
+        {{"--b", "4.5"}, "belongs to certified mode"}, {{"--sigma0", "0.01"}, "belongs to certified mode"}, {{"--rho0", "inf"}, "0.6124"},
     };
     for (const auto& [option, answer] : bad) {
         Names arguments = {"mesh", cube, "-o", scratch.file("out.mesh"), "--json", scratch.file("report.json")};
@@ -99,6 +101,26 @@ TEST(usage, values_out_of_range_are_refused_with_the_range) {
     EXPECT_EQ(scratch.listing(), Names{"cube.off"});
     for (const Names& option : {Names{"--tolerance", "-1"}, Names{"--flat-angle", "nan"}, Names{"--max-aspect", "0"}, Names{"--min-sigma", "-1"}})
         EXPECT_EQ(run_wellmesh({"check", cube, option[0], option[1]}).status, 3) << option[0];
+}
+
+TEST(usage, certified_constants_outside_the_theorems_are_refused_with_the_range) {
+    const ScratchFolder scratch;
+    const std::string cube = scratch.write("cube.off", kCubeOff);
+    const std::vector<std::pair<Names, std::string>> bad = {
+        {{"--delta", "1"}, "delta must be above 0 and below 1, not 1"}, {{"--delta", "0"}, "above 0 and below 1"}, {{"--delta", "-0.1"}, "above 0 and below 1"},
+        {{"--delta", "nan"}, "above 0 and below 1"}, {{"--delta", "inf"}, "above 0 and below 1"},
+        {{"--b", "0"}, "b must be a finite number above 0"}, {{"--b", "-1"}, "finite number above 0"}, {{"--b", "nan"}, "finite number above 0"}, {{"--b", "inf"}, "finite number above 0"},
+        {{"--b", "4.2"}, "(1 - delta) b >= 4 (Theorem 4.2) is violated: 3.99 with delta = 0.05, b = 4.2, rho0 = 20; b must be at least 4.2106"},
+        {{"--rho0", "8"}, "(1 - delta)^2 rho0 >= 8 (Theorem 4.2)"}, {{"--max-radius-edge", "14"}, "Theorem 5.1, grading"}, {{"--rho0", "nan"}, "finite number"}, {{"--rho0", "inf"}, "finite number"},
+        {{"--delta", "0.2"}, "b must be at least 5, or delta at most 0.1111"},
+        {{"--sigma0", "0"}, "sigma0 must be above 0 and at most 0.1179"}, {{"--sigma0", "nan"}, "at most 0.1179"}, {{"--sigma0", "0.2"}, "at most 0.1179"},
+        {{"--min-dihedral", "20"}, "judges slivers by sigma0"},
+    };
+    for (const auto& [option, answer] : bad) {
+        const Outcome outcome = run_wellmesh({"mesh", cube, "--mode", "certified", option[0], option[1]});
+        EXPECT_EQ(outcome.status, 3) << option[0] << ' ' << option[1];
+        EXPECT_TRUE(contains(outcome.err, answer)) << option[0] << ' ' << option[1] << '\n' << outcome.err;
+    }
 }
 
 TEST(usage, several_bad_values_are_listed_at_once) {

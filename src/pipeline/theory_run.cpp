@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/theory_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace wellmesh {
+namespace {
+
+/// Tries of a picking region in certified mode; facets get a half, segments a quarter. A last resort is no goal there, so many more than
+/// the practical mode's: the first few succeed nearly always.
+constexpr unsigned kCertifiedCandidates = 400;
+
+bool has_size(const MeshOptions& options, const ValidPlc& plc) {
+    return options.size.edge_length || options.size.max_volume ||
+           std::any_of(plc.cells.begin(), plc.cells.end(), [](const ValidCell& c) { return c.filled && c.max_volume > 0; });
+}
+
+}  // namespace
+
+TheoryConstants paper_constants(const MeshOptions& options) {
+    const PaperConstants& paper = options.paper;
+    const double rho0 = options.quality.max_radius_edge_ratio;
+    if (options.mode == Mode::certified) return {paper.delta.value_or(kCertifiedDelta), paper.b.value_or(kCertifiedB), rho0, paper.sigma0.value_or(kCertifiedSigma)};
+    return {paper.delta.value_or(kPracticalDelta), std::numeric_limits<double>::infinity(), rho0, 0};
+}
+
+std::vector<std::string> check_paper_constants(const MeshOptions& options) {
+    const TheoryConstants c = paper_constants(options);
+    std::vector<std::string> problems;
+    if (options.mode == Mode::certified) {
+        for (const std::string& problem : check(c)) problems.push_back("certified mode: " + problem);
+        if (options.quality.min_dihedral_angle_deg != 0)
+            problems.push_back(fmt::format("min dihedral angle must be 0 in certified mode, which judges slivers by sigma0, not {}", options.quality.min_dihedral_angle_deg));
+        return problems;
+    }
+    if (!(c.delta > 0 && c.delta < 1)) problems.push_back(fmt::format("delta must be above 0 and below 1, not {}", c.delta));
+    if (options.paper.b) problems.push_back(fmt::format("b (here {}) belongs to certified mode", *options.paper.b));
+    if (options.paper.sigma0) problems.push_back(fmt::format("sigma0 (here {}) belongs to certified mode", *options.paper.sigma0));
+    return problems;
+}
+
+std::unique_ptr<RunRecorder> prepare_theory(const ConformingMesh& mesh, BoundaryRefiner& boundary, const MeshOptions& options) {
+    const TheoryConstants c = paper_constants(options);
+    const bool certified = options.mode == Mode::certified;
+    boundary.rules.delta = c.delta;
+    boundary.rules.jitter = certified ? 0 : std::min(boundary.rules.jitter, c.delta);
+    boundary.rules.strict = certified;
+    if (!certified && !options.invariants) return nullptr;
+    auto recorder = std::make_unique<RunRecorder>(mesh, c, has_size(options, mesh.plc()));
+    boundary.recorder = recorder.get();
+    return recorder;
+}
+
+void set_sliver_rule(Refiner& refiner, const MeshOptions& options) {
+    const TheoryConstants c = paper_constants(options);
+    refiner.set_sliver_rule({c.sigma0, c.b, kCertifiedCandidates});
+}
+
+void finish_theory(RunRecorder* recorder, BoundaryRefiner& boundary, MeshResult& result) {
+    if (!recorder) return;
+    boundary.recorder = nullptr;
+    result.invariants = recorder->finish();
+}
+
+void judge_invariants(MeshResult& result, const MeshOptions& options) {
+    if (options.mode != Mode::certified || !result.invariants) return;
+    std::string broken;  // witnesses say where: vertices that were inserted have no number in the input
+    for (const InvariantClaim& claim : result.invariants->claims) {
+        if (claim.violations == 0 || claim.name == "theorem_4_1") continue;
+        broken += fmt::format("{}{} ({}): {} of {} events, bound {:.6g}, worst {:.6g}, first: {}", broken.empty() ? "" : "; ", claim.name, claim.statement, claim.violations,
+                              claim.events, claim.bound, claim.worst, claim.witness);
+    }
+    if (!broken.empty())
+        throw MeshError(ErrorCode::internal_invariant, Stage::refine, "the run violates what is proven of it; please report this input: " + broken);
+    // Above the existence theorem's own sigma0, which no double holds, points without new small slivers need not exist.
+    if (const InvariantClaim* existence = result.invariants->find("theorem_4_1"))
+        result.goals.push_back({"picks that avoid new small slivers", 1, existence->violations == 0 ? 1.0 : 0.0, existence->violations == 0, existence->violations, {}});
+}
+
+}  // namespace wellmesh

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "theory/local_feature_size.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "core/vec3_math.hpp"
+
+namespace wellmesh {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kLeaf = 4;
+
+double coordinate(const Vec3& p, unsigned axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+double squared_distance_to_box(const Vec3& x, const Vec3& low, const Vec3& high) {
+    const auto outside = [](double v, double l, double h) { return v < l ? l - v : v > h ? v - h : 0.0; };
+    return squared_norm({outside(x.x, low.x, high.x), outside(x.y, low.y, high.y), outside(x.z, low.z, high.z)});
+}
+
+bool share_a_number(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+    if (a.size() > b.size()) return share_a_number(b, a);
+    // Facets of thousands of vertices meet segments of two: search the longer list.
+    return std::any_of(a.begin(), a.end(), [&](std::uint32_t v) { return std::binary_search(b.begin(), b.end(), v); });
+}
+
+}  // namespace
+
+double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
+    const Vec3 d = b - a;
+    const double length = squared_norm(d);
+    const double t = length > 0 ? std::clamp(dot(x - a, d) / length, 0.0, 1.0) : 0.0;
+    // From the nearer end, so that nothing cancels at the other.
+    return t < 0.5 ? norm(x - (a + t * d)) : norm(x - (b + (std::clamp(dot(x - b, d) / length, -1.0, 0.0)) * d));
+}
+
+double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 n = cross(b - a, c - a);
+    const double area = norm(n);
+    const bool over = area > 0 && dot(cross(b - x, c - x), n) >= 0 && dot(cross(c - x, a - x), n) >= 0 && dot(cross(a - x, b - x), n) >= 0;
+    if (over) return std::abs(dot(x - a, n)) / area;
+    return std::min({distance_to_segment(x, a, b), distance_to_segment(x, b, c), distance_to_segment(x, c, a)});
+}
+
+LocalFeatureSize::LocalFeatureSize(const ValidPlc& plc) {
+    const auto point = [&](VertexId v) { return plc.vertices[v.index()]; };
+    for (std::size_t i = 0; i < plc.vertices.size(); ++i) {
+        const auto feature = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.push_back({static_cast<std::uint32_t>(i)});
+        primitives_.push_back({{plc.vertices[i], {}, {}}, 1, feature});
+    }
+    for (const ValidSegment& s : plc.segments) {
+        const auto feature = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.push_back({s.ends[0].value(), s.ends[1].value()});
+        std::sort(vertices_.back().begin(), vertices_.back().end());
+        primitives_.push_back({{point(s.ends[0]), point(s.ends[1]), {}}, 2, feature});
+    }
+    for (const ValidFacet& f : plc.facets) {
+        const auto feature = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.emplace_back();
+        for (const VertexId v : f.vertices) vertices_.back().push_back(v.value());
+        std::sort(vertices_.back().begin(), vertices_.back().end());
+        for (const auto& t : f.triangles) primitives_.push_back({{point(t[0]), point(t[1]), point(t[2])}, 3, feature});
+    }
+    if (!primitives_.empty()) build(0, static_cast<std::uint32_t>(primitives_.size()));
+}
+
+std::uint32_t LocalFeatureSize::build(std::uint32_t begin, std::uint32_t end) {
+    Node node{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}, begin, end, 0};
+    for (std::uint32_t i = begin; i < end; ++i)
+        for (unsigned k = 0; k < primitives_[i].size; ++k) {
+            const Vec3& p = primitives_[i].corners[k];
+            node.low = {std::min(node.low.x, p.x), std::min(node.low.y, p.y), std::min(node.low.z, p.z)};
+            node.high = {std::max(node.high.x, p.x), std::max(node.high.y, p.y), std::max(node.high.z, p.z)};
+        }
+    const auto at = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back(node);
+    if (end - begin <= kLeaf) return at;
+    const Vec3 extent = node.high - node.low;
+    const unsigned axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const auto centre = [axis](const Primitive& p) {
+        double sum = 0;
+        for (unsigned k = 0; k < p.size; ++k) sum += coordinate(p.corners[k], axis);
+        return sum / p.size;
+    };
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(primitives_.begin() + begin, primitives_.begin() + middle, primitives_.begin() + end, [&](const Primitive& p, const Primitive& q) {
+        const double x = centre(p), y = centre(q);
+        return x != y ? x < y : p.feature < q.feature;
+    });
+    build(begin, middle);
+    const std::uint32_t right = build(middle, end);
+    nodes_[at].right = right;
+    return at;
+}
+
+bool LocalFeatureSize::incident(std::uint32_t f, std::uint32_t g) const { return share_a_number(vertices_[f], vertices_[g]); }
+
+double LocalFeatureSize::operator()(const Vec3& x) const {
+    // Boxes and primitives by distance: primitives as negative numbers, so that they come before boxes equally far.
+    using Entry = std::pair<double, std::int64_t>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting;
+    const auto push_node = [&](std::uint32_t n) { waiting.push({std::sqrt(squared_distance_to_box(x, nodes_[n].low, nodes_[n].high)), n}); };
+    if (!nodes_.empty()) push_node(0);
+    std::vector<std::uint32_t> met;
+    while (!waiting.empty()) {
+        const auto [distance, what] = waiting.top();
+        waiting.pop();
+        if (what >= 0) {
+            const Node& node = nodes_[static_cast<std::size_t>(what)];
+            if (node.right != 0) {
+                push_node(static_cast<std::uint32_t>(what) + 1);
+                push_node(node.right);
+                continue;
+            }
+            for (std::uint32_t i = node.begin; i < node.end; ++i) {
+                const auto& [corners, size, feature] = primitives_[i];
+                const double d = size == 1   ? norm(x - corners[0])
+                                 : size == 2 ? distance_to_segment(x, corners[0], corners[1])
+                                             : distance_to_triangle(x, corners[0], corners[1], corners[2]);
+                waiting.push({d, -1 - static_cast<std::int64_t>(feature)});
+            }
+            continue;
+        }
+        const auto feature = static_cast<std::uint32_t>(-1 - what);
+        if (std::find(met.begin(), met.end(), feature) != met.end()) continue;
+        if (std::any_of(met.begin(), met.end(), [&](std::uint32_t other) { return !incident(feature, other); })) return distance;
+        met.push_back(feature);
+    }
+    return kInfinity;
+}
+
+SpacingOfPoints::SpacingOfPoints(std::vector<Vec3> points) : points_(std::move(points)) { build(0, points_.size(), 0); }
+
+void SpacingOfPoints::build(std::size_t begin, std::size_t end, unsigned depth) {
+    if (end - begin < 2) return;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto at = [this](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end), [&](const Vec3& p, const Vec3& q) { return coordinate(p, depth % 3) < coordinate(q, depth % 3); });
+    build(begin, middle, depth + 1);
+    build(middle + 1, end, depth + 1);
+}
+
+void SpacingOfPoints::search(const Vec3& x, std::size_t begin, std::size_t end, unsigned depth, std::array<double, 2>& nearest) const {
+    if (begin == end) return;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const double d = squared_distance(x, points_[middle]);
+    if (d < nearest[0]) nearest = {d, nearest[0]};
+    else nearest[1] = std::min(nearest[1], d);
+    const double side = coordinate(x, depth % 3) - coordinate(points_[middle], depth % 3);
+    const bool left_first = side < 0;
+    search(x, left_first ? begin : middle + 1, left_first ? middle : end, depth + 1, nearest);
+    if (side * side <= nearest[1]) search(x, left_first ? middle + 1 : begin, left_first ? end : middle, depth + 1, nearest);
+}
+
+double SpacingOfPoints::operator()(const Vec3& x) const {
+    std::array<double, 2> nearest{kInfinity, kInfinity};
+    search(x, 0, points_.size(), 0, nearest);
+    return std::sqrt(nearest[1]);
+}
+
+}  // namespace wellmesh
