@@ -7,12 +7,15 @@
 
 #include "core/rng.hpp"
 
+#include <cstdio>
+#define DBG(...) std::fprintf(stderr, __VA_ARGS__)
 namespace wellmesh {
 namespace {
 
 constexpr unsigned kMoveSamples = 30, kPatientMoveSamples = 60;
 constexpr unsigned kPatientPasses = 2;    // patience with moves saves vertices: smoothing and splitting come after
-constexpr unsigned kSmoothingRounds = 3;
+constexpr unsigned kSmoothingRounds = 4;
+constexpr double kWorthRepeating = 0.85;  // part of the bad tetrahedra that may be left for another pass or smoothing to be tried
 constexpr unsigned kSplitRounds = 16;     // on one rung
 constexpr double kVertexBudget = 1.5;     // splits may not add more than half the vertices again,
 constexpr std::size_t kVertexAllowance = 1000;  // or so many on small meshes
@@ -25,6 +28,9 @@ std::uint64_t key_of(TetStore::Corners c) {
     std::sort(c.begin(), c.end());
     return mix64(mix64(c[0].value(), c[1].value()), mix64(c[2].value(), c[3].value()));
 }
+
+/// Has the number of bad tetrahedra fallen enough to do the same again?
+bool worth_it(std::size_t before, std::size_t after) { return static_cast<double>(after) <= kWorthRepeating * static_cast<double>(before); }
 
 double cosine_of_degrees(double degrees) { return std::cos(degrees * (std::numbers::pi / 180)); }
 
@@ -95,9 +101,12 @@ bool ShapeImprover::mend(const Bad& bad, unsigned samples, LastResort last_resor
     const std::uint64_t key = key_of(bad.corners);
     if (const auto known = stuck_.find(key); known != stuck_.end()) {
         Stuck& stuck = known->second;
+        if (stuck.pass == pass_) return true;  // listed already; changes around it are for the next pass
         if (stuck.when < last_change) stuck.failures = 0;
-        else if (stuck.pass == pass_) return true;
-        if (stuck.failures >= kTriesUntouched) return false;
+        if (stuck.failures >= kTriesUntouched) {
+            stuck.pass = pass_;
+            return false;
+        }
     }
     std::array<VertexId, 4> order = bad.corners;
     std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
@@ -159,7 +168,8 @@ RunGuard::Verdict ShapeImprover::passes(unsigned samples, unsigned most, LastRes
     for (unsigned p = 0; p < most && before > 0; ++p) {
         const RunGuard::Verdict verdict = pass(samples, last_resort);
         if (verdict != RunGuard::Verdict::go_on) return verdict;
-        if (left_.size() >= before) break;
+        DBG("  pass K%u lr%d: %zu -> %zu  v %zu evals %llu t %.2f\n", samples, (int)last_resort, before, left_.size(), mesh_.vertex_count(), (unsigned long long)statistics().evaluations, guard_.seconds());
+        if (!worth_it(before, left_.size())) break;
         before = left_.size();
     }
     return RunGuard::Verdict::go_on;
@@ -199,8 +209,10 @@ RunGuard::Verdict ShapeImprover::settle() {
     RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
     if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::none);
     for (unsigned r = 0; r < kSmoothingRounds && !left_.empty() && verdict == RunGuard::Verdict::go_on; ++r) {
+        const std::size_t before = left_.size();
         verdict = smooth_around_bad(1);
         if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::none);
+        if (!worth_it(before, left_.size())) break;
     }
     if (!left_.empty() && verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::remove_or_insert);
     return verdict;
@@ -244,6 +256,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
             last = mesh_;
             last_worst = worst_cosine();
         }
+        DBG("rung %.1f round %u: left %zu worst %.2f v %zu t %.2f rem %llu ins %llu sm %llu\n", std::acos(rung_cosine)*180/3.14159265, round, left_.size(), std::acos(worst_cosine())*57.29578, mesh_.vertex_count(), guard_.seconds(), (unsigned long long)statistics().removals,(unsigned long long)statistics().insertions,(unsigned long long)statistics().smoothings);
         verdict = split_worse_than(rung_cosine);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle();
     }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kReach = 0.3;       // of the mean incident edge: how far a vertex may be sampled; other candidates may go 1.5 times as far
 constexpr double kNearReach = 0.4;   // of that: every other sample stays this near
+constexpr double kGain = 0.1;        // of the way to the goal, in cosine: less is no progress
 constexpr std::size_t kTrials = 3;   // how many of the best candidates are tried in earnest where the boundary may still refuse them
 
 }  // namespace
@@ -189,7 +190,7 @@ bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
     if (!look_at_star(v)) return false;
     propose(worst, samples);
     if (!take_out()) return false;
-    const double limit = star_cosine_ - kWorthwhile;
+    const double limit = star_cosine_ - std::max(kWorthwhile, kGain * (star_cosine_ - goal));
     double best = limit;
     ranked_.clear();
     for (const Vec3& p : proposals_) {
