@@ -95,7 +95,7 @@ private:
         Refiner refiner(mesh, boundary, guard_, options_);
         if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 300'000 + 4 * expected_vertices(valid, refiner.sizes()));
         if (const double theta = options_.quality.min_dihedral_angle_deg; theta > 0)
-            refiner.set_sliver_cosine(std::cos(std::min(theta, kPickingAngleDeg) * (std::numbers::pi / 180)), kPickingCandidates);
+            refiner.set_sliver_cosine(std::cos(std::min(theta, kPickingAngleDeg) * (std::numbers::pi / 180)), getenv("PICK") ? (unsigned)atoi(getenv("PICK")) : kPickingCandidates);
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
             if (options_.seeding == Seeding::automatic) LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();

@@ -30,13 +30,13 @@ Vec3 BestInsertion::candidate(const Placement& where, const Vec3& centre, double
     return flush_to_exact_range(centre + (kReach * reach) * picking_point(3, key, k));
 }
 
-VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double goal) {
+VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit) {
     if (!std::isfinite(reach)) return {};
     Triangulation& tri = mesh_.triangulation();
     const auto corners = mesh_.tets().corners(t);
     const std::uint64_t key = mix64(seed_, mix64(mix64(corners[0].value(), corners[1].value()), mix64(corners[2].value(), corners[3].value())));
     Vec3 best{};
-    double best_cosine = judge_.angle_cosine(t) - kWorthwhile;
+    double best_cosine = limit;
     bool found = false;
     for (unsigned k = 0; k < samples; ++k) {
         const Vec3 p = candidate(where, centre, reach, key, k);
@@ -51,16 +51,15 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
         best = p;
         best_cosine = cosine;
         found = true;
-        if (cosine <= goal) break;
+        if (cosine <= judge_.goal()) break;
     }
     if (!found || !tri.find_conflict_cavity(best, t, cavity_)) return {};
     mesh_.save(cavity_.tets, before_);
     const InsertionReason reason = where.carrier == CarrierKind::region ? InsertionReason::sliver : InsertionReason::boundary_by_sliver;
-    const double limit = judge_.angle_cosine(t) - kWorthwhile;
     const VertexId v = mesh_.insert(cavity_, where, {where.carrier, reason, where.carrier_id, *std::max_element(corners.begin(), corners.end()), 0});
     changed_ = tri.new_tets();
     const bool fits = std::none_of(changed_.begin(), changed_.end(),
-                                   [&](TetId n) { return boundary_.has_encroached(n) || (judge_.counts(n) && judge_.cosine(n) > limit); });
+                                   [&](TetId n) { return boundary_.has_encroached(n) || (judge_.counts(n) && judge_.badness(n) > limit); });
     if (!fits) {
         mesh_.undo_insertion(v, where, before_);
         return {};
@@ -74,11 +73,11 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
     return v;
 }
 
-VertexId BestInsertion::insert(TetId t, double goal) {
+VertexId BestInsertion::insert(TetId t, double limit) {
     const auto c = mesh_.tets().corners(t);
     double radius = 0;
     const Vec3 centre = circumcentre(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]), &radius);
-    if (const VertexId v = insert_at(t, Placement::in_cell(mesh_.cell(t)), centre, radius, kSamplesInside, goal); v.valid()) return v;
+    if (const VertexId v = insert_at(t, Placement::in_cell(mesh_.cell(t)), centre, radius, kSamplesInside, limit); v.valid()) return v;
     // A refused point leaves the same tetrahedra under new numbers.
     const auto alive = [&] { return judge_.counts(t) && mesh_.tets().corners(t) == c; };
     for (unsigned f = 0; f < 4 && alive(); ++f) {
@@ -86,13 +85,13 @@ VertexId BestInsertion::insert(TetId t, double goal) {
         if (!facet.valid()) continue;
         const auto fc = mesh_.tets().face_corners(TetFace{t, f});
         const Vec3 middle = circumcentre(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), &radius);
-        if (const VertexId v = insert_at(t, Placement::on_facet(facet), middle, radius, kSamplesOnFacet, goal); v.valid()) return v;
+        if (const VertexId v = insert_at(t, Placement::on_facet(facet), middle, radius, kSamplesOnFacet, limit); v.valid()) return v;
     }
     for (unsigned e = 0; e < 6 && alive(); ++e) {
         const SegmentId s = mesh_.segment_at(t, e);
         if (!s.valid()) continue;
         const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
-        if (const VertexId v = insert_at(t, Placement::on_segment({a, b, s}), 0.5 * (mesh_.point(a) + mesh_.point(b)), 1, kSamplesOnSegment, goal); v.valid()) return v;
+        if (const VertexId v = insert_at(t, Placement::on_segment({a, b, s}), 0.5 * (mesh_.point(a) + mesh_.point(b)), 1, kSamplesOnSegment, limit); v.valid()) return v;
     }
     return {};
 }

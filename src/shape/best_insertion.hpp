@@ -17,14 +17,15 @@ public:
     BestInsertion(ConformingMesh& mesh, BoundaryRefiner& boundary, const TetJudge& judge, std::uint64_t seed)
         : mesh_(mesh), boundary_(boundary), judge_(judge), seed_(seed) {}
 
-    /// Mends t by a point inside its cell, else on one of its subfaces, else on one of its subsegments. @return the new vertex, or an invalid id.
-    VertexId insert(TetId t, double goal);
+    /// Replaces t by the star of a point inside its cell, else on one of its subfaces, else on one of its subsegments, in which nothing is
+    /// worse than `limit`. @return the new vertex, or an invalid id.
+    VertexId insert(TetId t, double limit);
     [[nodiscard]] const std::vector<TetId>& changed() const { return changed_; }
     [[nodiscard]] std::uint64_t count() const { return count_; }
     [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
 
 private:
-    VertexId insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double goal);
+    VertexId insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit);
     [[nodiscard]] Vec3 candidate(const Placement& where, const Vec3& centre, double reach, std::uint64_t key, unsigned k) const;
 
     ConformingMesh& mesh_;

@@ -48,9 +48,9 @@ private:
     using Corners = TetStore::Corners;
     /// By corners, as taking a vertex out for a trial and putting it back gives tetrahedra new ids.
     struct Bad {
-        double cosine = 0;
+        double badness = 0;
         Corners corners{};
-        friend bool operator<(const Bad& a, const Bad& b) { return a.cosine != b.cosine ? a.cosine < b.cosine : b.corners < a.corners; }
+        friend bool operator<(const Bad& a, const Bad& b) { return a.badness != b.badness ? a.badness < b.badness : b.corners < a.corners; }
     };
     struct Stuck {
         std::uint64_t when = 0;
@@ -69,7 +69,7 @@ private:
     void prune(std::size_t first_new_slot);
     void collect_bad();
     void touch(const std::vector<TetId>& tets);
-    void push(TetId t, double cosine);
+    void push(TetId t, double badness);
     [[nodiscard]] TetId find_tet(const Corners& corners);
     [[nodiscard]] double worst_cosine() const;
 

@@ -27,7 +27,7 @@ double judge_star(const ConformingMesh& mesh, const TetJudge& judge, const Cavit
         const auto c = tets.face_corners(b.inside);
         if (c[0] == kInfiniteVertex || c[1] == kInfiniteVertex || c[2] == kInfiniteVertex) continue;
         const Vec3 &p0 = mesh.point(c[0]), &p1 = mesh.point(c[1]), &p2 = mesh.point(c[2]);
-        const double cosine = judge.cosine(p0, p1, p2, cavity.point, mesh.cell(behind));
+        const double cosine = judge.badness(p0, p1, p2, cavity.point, mesh.cell(behind));
         if (cosine <= limit) {
             worst = std::max(worst, cosine);
             continue;
@@ -74,7 +74,7 @@ bool VertexMover::look_at_star(VertexId v) {
     std::size_t edges = 0;
     for (const TetId t : hole_.star) {
         if (!judge_.counts(t)) continue;
-        star_cosine_ = std::max(star_cosine_, judge_.angle_cosine(t));
+        star_cosine_ = std::max(star_cosine_, judge_.shape_badness(t));
         const auto f = mesh_.tets().face_corners(TetFace{t, mesh_.tets().find_corner(t, v)});
         const Vec3 a = mesh_.point(f[0]) - home_, b = mesh_.point(f[1]) - home_, c = mesh_.point(f[2]) - home_;
         optimal_ = optimal_ + 0.5 * scaled_circumcentre(a, b, c);  // |volume| (circumcentre - home), times six
@@ -132,7 +132,7 @@ bool VertexMover::take_out() {
 
 void VertexMover::judge_filling() {
     filling_cosine_.resize(filling_.size());
-    for (std::size_t i = 0; i < filling_.size(); ++i) filling_cosine_[i] = judge_.counts(filling_[i]) ? judge_.cosine(filling_[i]) : 0;
+    for (std::size_t i = 0; i < filling_.size(); ++i) filling_cosine_[i] = judge_.counts(filling_[i]) ? judge_.badness(filling_[i]) : 0;
 }
 
 void VertexMover::put_back() {
@@ -163,7 +163,7 @@ double VertexMover::try_point(const Vec3& p, double limit) {
 bool VertexMover::fits(double limit) const {
     for (const TetId t : changed_) {
         if (!mesh_.tets().is_live(t)) continue;
-        if (judge_.counts(t) && judge_.cosine(t) > limit) return false;
+        if (judge_.counts(t) && judge_.badness(t) > limit) return false;
         if (boundary_.has_encroached(t)) return false;
     }
     return true;
