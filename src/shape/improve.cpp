@@ -7,10 +7,6 @@
 
 #include "core/rng.hpp"
 
-#include <cstdio>
-#include <ctime>
-#include <cstdlib>
-#define DBG(...) std::fprintf(stderr, __VA_ARGS__)
 namespace wellmesh {
 namespace {
 
@@ -177,7 +173,6 @@ RunGuard::Verdict ShapeImprover::passes(unsigned samples, unsigned most, LastRes
     for (unsigned p = 0; p < most && before > 0; ++p) {
         const RunGuard::Verdict verdict = pass(samples, last_resort);
         if (verdict != RunGuard::Verdict::go_on) return verdict;
-        DBG("  pass K%u lr%d: %zu -> %zu  v %zu evals %llu t %.2f\n", samples, (int)last_resort, before, left_.size(), mesh_.vertex_count(), (unsigned long long)statistics().evaluations, (double)clock() / 1e6);
         if (!worth_it(before, left_.size())) break;
         before = left_.size();
     }
@@ -240,11 +235,6 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
         if (!t.valid()) continue;
         for (const VertexId v : b.corners) marked_[v.index()] = stamp;
         ++splits_;
-        static const double kLenient = getenv("LEN") ? atof(getenv("LEN")) : 0;
-        if (kLenient > 0 && insertion_.insert(t, std::cos(kLenient * std::acos(b.badness))).valid()) {
-            touch(insertion_.changed());
-            continue;
-        }
         const RunGuard::Verdict verdict = refiner_.split(t, InsertionReason::sliver);
         if (verdict != RunGuard::Verdict::go_on) return verdict;
     }
@@ -270,7 +260,6 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
             last = mesh_;
             last_worst = worst_cosine();
         }
-        DBG("rung %.1f round %u: left %zu worst %.2f v %zu t %.2f rem %llu ins %llu sm %llu\n", std::acos(rung_cosine)*180/3.14159265, round, left_.size(), std::acos(worst_cosine())*57.29578, mesh_.vertex_count(), (double)clock() / 1e6, (unsigned long long)statistics().removals,(unsigned long long)statistics().insertions,(unsigned long long)statistics().smoothings);
         verdict = split_worse_than(rung_cosine);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle();
     }
@@ -279,13 +268,16 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
     return verdict;
 }
 
-/// Takes vertices that this stage put in out again where the goal holds without them.
-void ShapeImprover::prune(std::size_t first_new_slot) {
-    bool again = true;
-    while (again) {
-        again = false;
-        for (std::size_t v = first_new_slot; v < mesh_.vertex_slots(); ++v)
-            again |= mesh_.triangulation().is_inserted(VertexId{v}) && mover_.remove(VertexId{v}, goal_cosine_);
+/// Takes vertices out again where the goal holds without them: those that this stage put in, then others for as long as the mesh has more
+/// than it had at first.
+void ShapeImprover::prune(std::size_t first_new_slot, std::size_t vertices_at_start) {
+    for (const std::size_t first : {first_new_slot, mesh_.plc().vertices.size()}) {
+        std::size_t before = 0;
+        do {
+            before = mesh_.vertex_count();
+            for (std::size_t v = mesh_.vertex_slots(); v-- > first && (first == first_new_slot || mesh_.vertex_count() > vertices_at_start);)
+                if (mesh_.triangulation().is_inserted(VertexId{v})) mover_.remove(VertexId{v}, goal_cosine_);
+        } while (mesh_.vertex_count() < before);
     }
 }
 
@@ -298,7 +290,7 @@ RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left_.empty(); rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices, reached);
-    if (verdict == RunGuard::Verdict::go_on) prune(slots);
+    if (verdict == RunGuard::Verdict::go_on) prune(slots, vertices);
     return verdict;
 }
 

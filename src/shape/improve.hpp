@@ -66,7 +66,7 @@ private:
     RunGuard::Verdict smooth_around_bad(unsigned rings);
     RunGuard::Verdict climb(double rung_cosine, std::size_t vertices_at_start, bool& reached);
     RunGuard::Verdict split_worse_than(double cosine);
-    void prune(std::size_t first_new_slot);
+    void prune(std::size_t first_new_slot, std::size_t vertices_at_start);
     void collect_bad();
     void touch(const std::vector<TetId>& tets);
     void push(TetId t, double badness);
