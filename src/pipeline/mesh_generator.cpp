@@ -24,7 +24,8 @@
 namespace wellmesh {
 namespace {
 
-/// Refinement looks for points without slivers below this angle, among so many: more cost more than the moves that they save (docs/decisions/0010).
+/// Refinement looks for points without slivers up to this angle, among so many: more cost more than the moves that they save. For larger
+/// angles most stars would have to be moved anyway, and picks only add vertices (docs/decisions/0010).
 constexpr double kPickingAngleDeg = 20;
 constexpr unsigned kPickingCandidates = 12;
 
@@ -110,8 +111,8 @@ private:
         refiner.guard_edges();
         if (options_.mode == Mode::certified) set_sliver_rule(refiner, options_);
         if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 300'000 + 4 * expected_vertices(valid, refiner.sizes()));
-        if (const double theta = options_.quality.min_dihedral_angle_deg; theta > 0)
-            refiner.set_sliver_cosine(std::cos(std::min(theta, kPickingAngleDeg) * (std::numbers::pi / 180)), kPickingCandidates);
+        if (const double theta = options_.quality.min_dihedral_angle_deg; theta > 0 && theta <= kPickingAngleDeg)
+            refiner.set_sliver_cosine(std::cos(theta * (std::numbers::pi / 180)), kPickingCandidates);
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
             // The paper has no seeds: its original mesh is made by its own rules.

@@ -98,7 +98,7 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
         return Fault::flat;
     }
     const CellSize& size = sizes_[mesh_.cell(t).index()];
-    if (squared_radius > size.max_squared_circumradius || six_volume > 6 * size.max_volume) return Fault::size;
+    if (squared_radius > squared_size_slack_ * size.max_squared_circumradius || six_volume > 6 * size.max_volume) return Fault::size;
     squared_badness = squared_radius / squared_edge;
     if (squared_badness > max_radius_edge_ * max_radius_edge_) return Fault::radius_edge;
     return Fault::none;
@@ -359,6 +359,10 @@ void Refiner::process_centre(TetId t, InsertionReason reason, const Vec3& centre
 
 RunGuard::Verdict Refiner::refine() {
     enqueue_all();
+    return drain();
+}
+
+RunGuard::Verdict Refiner::drain() {
     while (true) {
         if (!boundary_.idle()) {
             judging_ = strict();
@@ -394,6 +398,7 @@ RunGuard::Verdict Refiner::refine() {
 RunGuard::Verdict Refiner::split(TetId t, InsertionReason reason) {
     const std::uint32_t print = BadTetQueue::fingerprint(mesh_.tets().corners(t));
     double badness = 0;
+    squared_size_slack_ = kSizeTolerance * kSizeTolerance;
     for (unsigned attempts = 0; attempts < 64; ++attempts) {
         if (!mesh_.tets().is_finite(t) || BadTetQueue::fingerprint(mesh_.tets().corners(t)) != print || !mesh_.in_domain(t)) break;
         if (classify(t, badness) == Fault::flat) split_flat(t);
@@ -401,7 +406,9 @@ RunGuard::Verdict Refiner::split(TetId t, InsertionReason reason) {
         judging_ = strict();
         while (!boundary_.idle()) boundary_.step();
     }
-    return refine();
+    const RunGuard::Verdict verdict = drain();
+    squared_size_slack_ = 1;
+    return verdict;
 }
 
 }  // namespace wellmesh

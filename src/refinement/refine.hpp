@@ -36,7 +36,8 @@ public:
     /// Splits until no tetrahedron of the domain violates its size or the radius-edge bound.
     /// @return what stopped it; the mesh conforms in any case.
     RunGuard::Verdict refine();
-    /// Splits tetrahedron t with the cascade of refine(), then restores size and radius-edge bound.
+    /// Splits tetrahedron t with the cascade of refine(), then restores size and radius-edge bound in what that made; circumradii within
+    /// kSizeTolerance of their bound stay, as moves may have made them.
     RunGuard::Verdict split(TetId t, InsertionReason reason);
 
     /// Takes slivers for bad elements, too: refine() then ends when there are none. To be set before anything is refined, with strict rules.
@@ -59,6 +60,7 @@ public:
     }
 
 private:
+    RunGuard::Verdict drain();
     void enqueue(const std::vector<TetId>& tets);
     void enqueue_all();
     void process(TetId t, InsertionReason reason);
@@ -87,6 +89,7 @@ private:
     bool outside_rules_ = false;         // the point to be inserted is no pick of the paper's
     double rounding_ = 0;  // input units: a tetrahedron this thin is flat
     double sliver_cosine_ = 2;
+    double squared_size_slack_ = 1;
     unsigned candidates_ = 1;
     bool judging_ = false;
     BadTetQueue by_size_, by_radius_edge_, by_sliver_;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Raises the smallest dihedral angle of a conforming Delaunay mesh without leaving the Delaunay and Gabriel properties: worst tetrahedron
-// first, its vertices are moved along their carriers (inside their cell, in their facet, along their segment) to the best of sampled
-// places; where no move helps, the best of sampled insertions; last, the tetrahedra that are left are split with the ordinary cascade
-// and moves begin again. A move is accepted only if every tetrahedron that it makes is better than the worst one that it destroys, so
-// the moves end.
+// first, its vertices move along their carriers; where that fails, the neighbourhood is smoothed towards the optimal Delaunay triangulation
+// [ChenXu04] and moves are tried again; then a vertex is taken out, or put in, where that makes everything better [LiTeng01, section 6].
+// What is left, mostly where the domain is one element thick, is split with the ordinary cascade, the smallest angles first, on a ladder of
+// angles: a rung that can't be reached leaves the mesh of the last one. In the end vertices that turn out to be superfluous go again.
 //
-// Relocation by sampling follows [Tournois09] and [EdelsbrunnerEtAl00] in spirit; the vertex is taken out of the triangulation once and every
-// candidate is judged by its cavity there, nothing is inserted for a trial.
+// A move is accepted only if every tetrahedron that it makes is better than the worst one that it destroys, so the moves end; smoothing
+// and splits are bounded in number.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -17,77 +18,76 @@
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
 #include "refinement/refine.hpp"
+#include "shape/best_insertion.hpp"
+#include "shape/tet_judge.hpp"
+#include "shape/vertex_mover.hpp"
 
 namespace wellmesh {
 
 struct ImproveStatistics {
-    std::uint64_t moves = 0, attempts = 0, evaluations = 0, insertions = 0, splits = 0, undone = 0;
+    std::uint64_t moves = 0, smoothings = 0, removals = 0, attempts = 0, evaluations = 0, insertions = 0, splits = 0, undone = 0;
 };
 
 class ShapeImprover {
 public:
     ShapeImprover(ConformingMesh& mesh, BoundaryRefiner& boundary, Refiner& refiner, RunGuard& guard, std::uint64_t seed)
-        : mesh_(mesh), boundary_(boundary), refiner_(refiner), guard_(guard), seed_(seed) {}
+        : mesh_(mesh),
+          refiner_(refiner),
+          guard_(guard),
+          judge_(mesh, refiner.sizes(), refiner.max_radius_edge()),
+          mover_(mesh, boundary, judge_, seed),
+          insertion_(mesh, boundary, judge_, seed) {}
 
     /// Works until every dihedral angle of the domain is at least `angle_deg`, or nothing helps, or the guard says stop.
     RunGuard::Verdict improve(double angle_deg);
-    [[nodiscard]] const ImproveStatistics& statistics() const { return statistics_; }
+    [[nodiscard]] ImproveStatistics statistics() const;
     /// Tetrahedra of the domain below the angle now.
     [[nodiscard]] std::size_t count_bad(double angle_deg) const;
 
 private:
+    using Corners = TetStore::Corners;
+    /// By corners, as taking a vertex out for a trial and putting it back gives tetrahedra new ids.
     struct Bad {
-        double cosine = 0;
-        TetId tet{};
-        std::uint32_t fingerprint = 0;
-        friend bool operator<(const Bad& a, const Bad& b) { return a.cosine != b.cosine ? a.cosine < b.cosine : b.tet < a.tet; }
+        double badness = 0;
+        Corners corners{};
+        friend bool operator<(const Bad& a, const Bad& b) { return a.badness != b.badness ? a.badness < b.badness : b.corners < a.corners; }
     };
-    struct Candidate {
-        Vec3 point{};
-        double cosine = 0;
-    };
-
-    RunGuard::Verdict pass(double goal_cosine, unsigned samples, bool may_insert);
-    void mend(const TetStore::Corners& corners, unsigned samples, bool may_insert);
-    [[nodiscard]] TetId find_tet(const TetStore::Corners& corners);
-    bool move_vertex(VertexId v, TetId worst, unsigned samples);
-    bool insert_best(TetId t);
-    [[nodiscard]] bool still_there(const Bad& bad) const;
-    [[nodiscard]] double cosine_of(TetId t) const;
-    [[nodiscard]] bool within_bounds(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, CellId cell) const;
-    [[nodiscard]] bool is_within_bounds(TetId t) const;
-    /// Largest cosine of the star of cavity.point, or more than `limit` as soon as that is certain.
-    [[nodiscard]] double star_cosine(const Cavity& cavity, const Placement& where, double limit) const;
-    void propose(VertexId v, TetId worst, const Placement& where, unsigned samples);
-    [[nodiscard]] Vec3 on_carrier(const Placement& where, const Vec3& p) const;
-    [[nodiscard]] bool placement_of(VertexId v, const std::vector<TetId>& star, Placement& where) const;
-    [[nodiscard]] bool fits(const std::vector<TetId>& tets, double cosine) const;
-    void touch(const std::vector<TetId>& tets);
-
-    ConformingMesh& mesh_;
-    BoundaryRefiner& boundary_;
-    Refiner& refiner_;
-    RunGuard& guard_;
-    std::uint64_t seed_;
-    double goal_cosine_ = 1;
-    std::uint64_t clock_ = 0;
-    std::vector<std::uint64_t> touched_;  // per vertex: when its star changed last
     struct Stuck {
         std::uint64_t when = 0;
+        std::uint64_t pass = 0;
         unsigned failures = 0;
     };
+    enum class LastResort { none, remove_or_insert };
+
+    RunGuard::Verdict settle();
+    RunGuard::Verdict pass(unsigned samples, LastResort last_resort);
+    RunGuard::Verdict passes(unsigned samples, unsigned most, LastResort last_resort);
+    bool mend(const Bad& bad, unsigned samples, LastResort last_resort);
+    RunGuard::Verdict smooth_around_bad(unsigned rings);
+    RunGuard::Verdict climb(double rung_cosine, std::size_t vertices_at_start, bool& reached);
+    RunGuard::Verdict split_worse_than(double cosine);
+    void prune(std::size_t first_new_slot, std::size_t vertices_at_start);
+    void collect_bad();
+    void touch(const std::vector<TetId>& tets);
+    void push(TetId t, double badness);
+    [[nodiscard]] TetId find_tet(const Corners& corners);
+    [[nodiscard]] double worst_cosine() const;
+
+    ConformingMesh& mesh_;
+    Refiner& refiner_;
+    RunGuard& guard_;
+    TetJudge judge_;
+    VertexMover mover_;
+    BestInsertion insertion_;
+
+    double goal_cosine_ = 1;
+    std::uint64_t clock_ = 0, pass_ = 0, splits_ = 0;
+    std::vector<std::uint64_t> touched_;             // per vertex: when its star changed last
+    std::vector<std::uint64_t> marked_;              // per vertex: stamp of the last collection that it belongs to
     std::unordered_map<std::uint64_t, Stuck> stuck_;  // by corners; looked up, never iterated
-    std::vector<Bad> heap_;
-    Hole hole_;
-    Cavity cavity_;
-    ConformingMesh::Snapshot star_before_, cavity_before_;
-    std::vector<Vec3> proposals_;
-    std::vector<Candidate> ranked_;
-    std::vector<double> filling_cosine_;
-    std::vector<TetId> filling_, star_;
-    std::vector<Subsegment> encroached_segments_;
-    std::vector<Subface> encroached_faces_;
-    ImproveStatistics statistics_;
+    std::vector<Bad> heap_, left_;
+    std::vector<VertexId> around_;
+    std::vector<TetId> star_;
 };
 
 }  // namespace wellmesh

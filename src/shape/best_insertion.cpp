@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shape/best_insertion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "conforming/place_point.hpp"
+#include "core/rng.hpp"
+#include "core/vec3_math.hpp"
+#include "shape/vertex_mover.hpp"
+
+namespace wellmesh {
+namespace {
+
+constexpr double kReach = 0.4;  // of the circumradius (half the length of a subsegment)
+constexpr unsigned kSamplesInside = 40, kSamplesOnFacet = 30, kSamplesOnSegment = 12;
+
+}  // namespace
+
+Vec3 BestInsertion::candidate(const Placement& where, const Vec3& centre, double reach, std::uint64_t key, unsigned k) const {
+    if (where.carrier == CarrierKind::segment) {
+        const Vec3 half = 0.5 * (mesh_.point(where.b) - mesh_.point(where.a));
+        return project_to_segment(mesh_.plc(), SegmentId{where.carrier_id}, centre + (kReach * picking_point(1, key, k).x) * half);
+    }
+    if (where.carrier == CarrierKind::facet) {
+        const ValidFacet& facet = mesh_.plc().facets[where.carrier_id];
+        const Vec3 u = (kReach * reach) * picking_point(2, key, k);
+        return project_to_facet(facet, centre + u.x * facet.axis_u + u.y * facet.axis_v);
+    }
+    return flush_to_exact_range(centre + (kReach * reach) * picking_point(3, key, k));
+}
+
+VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit) {
+    if (!std::isfinite(reach)) return {};
+    Triangulation& tri = mesh_.triangulation();
+    const auto corners = mesh_.tets().corners(t);
+    const std::uint64_t key = mix64(seed_, mix64(mix64(corners[0].value(), corners[1].value()), mix64(corners[2].value(), corners[3].value())));
+    Vec3 best{};
+    double best_cosine = limit;
+    bool found = false;
+    for (unsigned k = 0; k < samples; ++k) {
+        const Vec3 p = candidate(where, centre, reach, key, k);
+        ++evaluations_;
+        if (!tri.find_conflict_cavity(p, t, cavity_) || !tri.in_last_cavity(t)) continue;
+        if (where.carrier == CarrierKind::region && mesh_.cell(cavity_.tets[0]).value() != where.carrier_id) continue;
+        const double cosine = judge_star(mesh_, judge_, cavity_, where, best_cosine);
+        if (cosine > best_cosine) continue;
+        if (where.carrier != CarrierKind::region && (!mesh_.holds_carrier(cavity_, where) || mesh_.would_break(cavity_, where))) continue;
+        boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+        if (!encroached_segments_.empty() || !encroached_faces_.empty()) continue;
+        best = p;
+        best_cosine = cosine;
+        found = true;
+        if (cosine <= judge_.goal()) break;
+    }
+    if (!found || !tri.find_conflict_cavity(best, t, cavity_)) return {};
+    mesh_.save(cavity_.tets, before_);
+    const InsertionReason reason = where.carrier == CarrierKind::region ? InsertionReason::sliver : InsertionReason::boundary_by_sliver;
+    const VertexId v = mesh_.insert(cavity_, where, {where.carrier, reason, where.carrier_id, *std::max_element(corners.begin(), corners.end()), 0});
+    changed_ = tri.new_tets();
+    const bool fits = std::none_of(changed_.begin(), changed_.end(),
+                                   [&](TetId n) { return boundary_.has_encroached(n) || (judge_.counts(n) && judge_.badness(n) > limit); });
+    if (!fits) {
+        mesh_.undo_insertion(v, where, before_);
+        return {};
+    }
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const TetId n : changed_)
+        for (const VertexId w : mesh_.tets().corners(n))
+            if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
+    mesh_.info(v).insertion_length = std::sqrt(shortest);
+    ++count_;
+    return v;
+}
+
+VertexId BestInsertion::insert(TetId t, double limit) {
+    const auto c = mesh_.tets().corners(t);
+    double radius = 0;
+    const Vec3 centre = circumcentre(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]), &radius);
+    if (const VertexId v = insert_at(t, Placement::in_cell(mesh_.cell(t)), centre, radius, kSamplesInside, limit); v.valid()) return v;
+    // A refused point leaves the same tetrahedra under new numbers.
+    const auto alive = [&] { return judge_.counts(t) && mesh_.tets().corners(t) == c; };
+    for (unsigned f = 0; f < 4 && alive(); ++f) {
+        const FacetId facet = mesh_.facet_at(TetFace{t, f});
+        if (!facet.valid()) continue;
+        const auto fc = mesh_.tets().face_corners(TetFace{t, f});
+        const Vec3 middle = circumcentre(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), &radius);
+        if (const VertexId v = insert_at(t, Placement::on_facet(facet), middle, radius, kSamplesOnFacet, limit); v.valid()) return v;
+    }
+    for (unsigned e = 0; e < 6 && alive(); ++e) {
+        const SegmentId s = mesh_.segment_at(t, e);
+        if (!s.valid()) continue;
+        const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
+        if (const VertexId v = insert_at(t, Placement::on_segment({a, b, s}), 0.5 * (mesh_.point(a) + mesh_.point(b)), 1, kSamplesOnSegment, limit); v.valid()) return v;
+    }
+    return {};
+}
+
+}  // namespace wellmesh

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// How bad a tetrahedron is to the shape stage: by its smallest dihedral angle, and where asked by its aspect ratio too, if it keeps the
+// bounds that refinement established.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "conforming/conforming_mesh.hpp"
+#include "quality/tet_shape.hpp"
+#include "refinement/sizing.hpp"
+
+namespace wellmesh {
+
+/// Badness is the cosine of the smallest dihedral angle, larger is worse; kNoAngleCosine is worst of all.
+class TetJudge {
+public:
+    TetJudge(const ConformingMesh& mesh, const std::vector<CellSize>& sizes, double max_radius_edge)
+        : mesh_(mesh), sizes_(sizes), squared_radius_edge_(max_radius_edge * max_radius_edge) {}
+
+    /// From now on the goal is this cosine, and a circumradius over inradius of at most `max_aspect`: beyond that a tetrahedron is as bad as
+    /// kAspectWeight (aspect / max_aspect - 1) above the goal.
+    void set_goal(double cosine, double max_aspect) {
+        goal_ = cosine;
+        max_aspect_ = max_aspect;
+    }
+    [[nodiscard]] double goal() const { return goal_; }
+
+    /// Badness of abcd, a tetrahedron of `cell`; kNoAngleCosine if it is flat or inverted, its radius-edge ratio or volume exceeds the
+    /// bound, or its circumradius exceeds kSizeTolerance times the bound.
+    [[nodiscard]] double badness(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, CellId cell) const {
+        const Vec3 u = b - a, v = c - a, w = d - a;
+        const Vec3 vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
+        const double det = dot(u, vw);
+        if (!(det > 0)) return kNoAngleCosine;
+        const double lu = squared_norm(u), lv = squared_norm(v), lw = squared_norm(w);
+        const double squared_radius = squared_norm(lu * vw + lv * wu + lw * uv) / (4 * det * det);
+        const double squared_edge = std::min({lu, lv, lw, squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
+        const CellSize& size = sizes_[cell.index()];
+        if (!(squared_radius <= squared_radius_edge_ * squared_edge) || squared_radius > kSizeTolerance * kSizeTolerance * size.max_squared_circumradius ||
+            det > 6 * size.max_volume)
+            return kNoAngleCosine;
+        return std::max(max_cos_dihedral(a, b, c, d), aspect_badness(squared_radius / (det * det), {cross(d - b, c - b), vw, wu, uv}));
+    }
+    [[nodiscard]] double badness(TetId t) const {
+        const auto& c = mesh_.tets().corners(t);
+        return badness(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]), mesh_.cell(t));
+    }
+    /// Badness of the shape alone, bounds or not.
+    [[nodiscard]] double shape_badness(TetId t) const {
+        const auto& k = mesh_.tets().corners(t);
+        const Vec3 &a = mesh_.point(k[0]), &b = mesh_.point(k[1]), &c = mesh_.point(k[2]), &d = mesh_.point(k[3]);
+        const double cosine = max_cos_dihedral(a, b, c, d);
+        if (cosine > goal_ || max_aspect_ == kNoAspect) return cosine;
+        const Vec3 u = b - a, v = c - a, w = d - a;
+        const double det = determinant(u, v, w);
+        return std::max(cosine, aspect_badness(squared_norm(scaled_circumcentre(u, v, w)) / (4 * det * det * det * det), inward_face_normals(a, b, c, d)));
+    }
+    /// Cosine of the smallest dihedral angle, nothing else.
+    [[nodiscard]] double cosine(TetId t) const {
+        const auto& c = mesh_.tets().corners(t);
+        return max_cos_dihedral(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]));
+    }
+    [[nodiscard]] bool counts(TetId t) const { return mesh_.tets().is_finite(t) && mesh_.in_domain(t); }
+
+    static constexpr double kNoAspect = std::numeric_limits<double>::infinity();
+
+private:
+    /// An aspect ratio half above its bound counts as three degrees below an angle of 30: angles come first.
+    static constexpr double kAspectWeight = 0.05;
+
+    /// @param squared_radius_by_det  (R / (6 V))^2; the inradius is 6 V over the sum of the normals' lengths.
+    [[nodiscard]] double aspect_badness(double squared_radius_by_det, const std::array<Vec3, 4>& normals) const {
+        if (max_aspect_ == kNoAspect) return 0;
+        const std::array<double, 4> squares{squared_norm(normals[0]), squared_norm(normals[1]), squared_norm(normals[2]), squared_norm(normals[3])};
+        // The sum of four lengths is at most twice the root of the sum of their squares: no root is needed for most.
+        if (squared_radius_by_det * 4 * (squares[0] + squares[1] + squares[2] + squares[3]) <= max_aspect_ * max_aspect_) return 0;
+        const double aspect = std::sqrt(squared_radius_by_det) * (std::sqrt(squares[0]) + std::sqrt(squares[1]) + std::sqrt(squares[2]) + std::sqrt(squares[3]));
+        if (aspect <= max_aspect_) return 0;
+        return std::min(goal_ * (1 + kAspectWeight * (aspect / max_aspect_ - 1)), 1.0);
+    }
+
+    const ConformingMesh& mesh_;
+    const std::vector<CellSize>& sizes_;
+    double squared_radius_edge_, goal_ = 1, max_aspect_ = kNoAspect;
+};
+
+}  // namespace wellmesh

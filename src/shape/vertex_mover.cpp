@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shape/vertex_mover.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "conforming/place_point.hpp"
+#include "core/rng.hpp"
+#include "core/vec3_math.hpp"
+
+namespace wellmesh {
+namespace {
+
+constexpr double kReach = 0.3;       // of the mean incident edge: how far a vertex may be sampled; other candidates may go 1.5 times as far
+constexpr double kNearReach = 0.4;   // of that: every other sample stays this near
+constexpr double kGain = 0.1;        // of the way to the goal, in cosine: less is no progress
+constexpr std::size_t kTrials = 3;   // how many of the best candidates are tried in earnest where the boundary may still refuse them
+
+}  // namespace
+
+double judge_star(const ConformingMesh& mesh, const TetJudge& judge, const Cavity& cavity, const Placement& where, double limit) {
+    const TetStore& tets = mesh.tets();
+    double worst = 0;
+    for (const BoundaryFace& b : cavity.boundary) {
+        const TetId behind = b.inside.tet();
+        if (!mesh.in_domain(behind)) continue;
+        const auto c = tets.face_corners(b.inside);
+        if (c[0] == kInfiniteVertex || c[1] == kInfiniteVertex || c[2] == kInfiniteVertex) continue;
+        const Vec3 &p0 = mesh.point(c[0]), &p1 = mesh.point(c[1]), &p2 = mesh.point(c[2]);
+        const double cosine = judge.badness(p0, p1, p2, cavity.point, mesh.cell(behind));
+        if (cosine <= limit) {
+            worst = std::max(worst, cosine);
+            continue;
+        }
+        // A flat tetrahedron on a subface of the point's own carrier will belong to the other side.
+        if (where.carrier != CarrierKind::region && mesh.facet_at(b.inside).valid() && side_of_equatorial_sphere(p0, p1, p2, cavity.point) == Sign::positive) continue;
+        return kNoAngleCosine;
+    }
+    return worst;
+}
+
+Vec3 VertexMover::on_carrier(const Vec3& p) const {
+    if (where_.carrier == CarrierKind::segment) return project_to_segment(mesh_.plc(), SegmentId{where_.carrier_id}, p);
+    if (where_.carrier == CarrierKind::facet) return project_to_facet(mesh_.plc().facets[where_.carrier_id], p);
+    return flush_to_exact_range(p);
+}
+
+bool VertexMover::find_placement() {
+    const VertexInfo& info = mesh_.info(vertex_);
+    where_ = Placement{info.carrier, info.carrier_id, {}, {}};
+    if (info.carrier != CarrierKind::segment) return true;
+    for (const TetId t : hole_.star) {
+        if (!mesh_.has_labels(t)) continue;
+        const unsigned at = mesh_.tets().find_corner(t, vertex_);
+        for (unsigned k = 0; k < 4; ++k) {
+            if (k == at || !mesh_.segment_at(t, kEdgeOf[at][k]).valid()) continue;
+            const VertexId w = mesh_.tets().corner(t, k);
+            if (w == where_.a || w == where_.b) continue;
+            (where_.a.valid() ? where_.b : where_.a) = w;
+        }
+    }
+    return where_.b.valid();
+}
+
+/// Finds the hole that v would leave, and what the star is like. @return false if v can't move.
+bool VertexMover::look_at_star(VertexId v) {
+    if (mesh_.info(v).carrier == CarrierKind::input_vertex || !mesh_.triangulation().is_inserted(v)) return false;
+    vertex_ = v;
+    if (!mesh_.triangulation().find_hole(v, hole_) || !find_placement()) return false;
+    home_ = mesh_.point(v);
+    optimal_ = middle_ = Vec3{};
+    star_cosine_ = 0;
+    double volume = 0, length = 0;
+    std::size_t edges = 0;
+    for (const TetId t : hole_.star) {
+        if (!judge_.counts(t)) continue;
+        star_cosine_ = std::max(star_cosine_, judge_.shape_badness(t));
+        const auto f = mesh_.tets().face_corners(TetFace{t, mesh_.tets().find_corner(t, v)});
+        const Vec3 a = mesh_.point(f[0]) - home_, b = mesh_.point(f[1]) - home_, c = mesh_.point(f[2]) - home_;
+        optimal_ = optimal_ + 0.5 * scaled_circumcentre(a, b, c);  // |volume| (circumcentre - home), times six
+        volume += determinant(a, b, c);
+        middle_ = middle_ + a + b + c;
+        length += norm(a) + norm(b) + norm(c);
+        edges += 3;
+    }
+    if (edges == 0) return false;
+    optimal_ = (1 / volume) * optimal_;
+    middle_ = (1.0 / static_cast<double>(edges)) * middle_;
+    mean_edge_ = length / static_cast<double>(edges);
+    return true;
+}
+
+void VertexMover::offer(const Vec3& offset, double reach) {
+    const double far = norm(offset);
+    if (!(far > 0) || !std::isfinite(far)) return;
+    proposals_.push_back(on_carrier(home_ + std::min(1.0, 1.5 * reach / far) * offset));
+}
+
+/// Places to try: the optimal-Delaunay point, the neighbours' middle, offsets against the worst tetrahedron's opposite face, then samples.
+void VertexMover::propose(TetId worst, unsigned samples) {
+    proposals_.clear();
+    const double reach = kReach * mean_edge_;
+    const std::uint64_t key = mix64(seed_, mix64(vertex_.value(), ++attempt_));
+    offer(optimal_, reach);
+    offer(middle_, reach);
+    const auto scale = [&](unsigned k) { return ((k & 1U) ? 1.0 : kNearReach) * reach; };
+    if (where_.carrier == CarrierKind::region) {
+        const auto f = mesh_.tets().face_corners(TetFace{worst, mesh_.tets().find_corner(worst, vertex_)});
+        const Vec3 n = cross(mesh_.point(f[1]) - mesh_.point(f[0]), mesh_.point(f[2]) - mesh_.point(f[0]));
+        for (const double step : {0.4, -0.4, 1.0, -1.0}) offer((step * reach / norm(n)) * n, reach);
+        for (unsigned k = 1; k <= samples; ++k) offer(scale(k) * picking_point(3, key, k), reach);
+    } else if (where_.carrier == CarrierKind::facet) {
+        const ValidFacet& facet = mesh_.plc().facets[where_.carrier_id];
+        for (unsigned k = 1; k <= samples; ++k) {
+            const Vec3 u = scale(k) * picking_point(2, key, k);
+            offer(u.x * facet.axis_u + u.y * facet.axis_v, reach);
+        }
+    } else {
+        const Vec3 d = mesh_.point(where_.b) - mesh_.point(where_.a);
+        for (unsigned k = 1; k <= samples / 2; ++k) offer((reach * picking_point(1, key, k).x / norm(d)) * d, reach);
+    }
+}
+
+bool VertexMover::take_out() {
+    mesh_.save(hole_.star, star_before_);
+    if (!mesh_.remove(hole_)) return false;
+    ++statistics_.attempts;
+    filling_ = mesh_.triangulation().new_tets();
+    judge_filling();
+    return true;
+}
+
+void VertexMover::judge_filling() {
+    filling_cosine_.resize(filling_.size());
+    for (std::size_t i = 0; i < filling_.size(); ++i) filling_cosine_[i] = judge_.counts(filling_[i]) ? judge_.badness(filling_[i]) : 0;
+}
+
+void VertexMover::put_back() {
+    mesh_.triangulation().set_point(vertex_, home_);
+    mesh_.undo_removal(vertex_, where_, star_before_);
+}
+
+bool VertexMover::encroaches_nothing() {
+    boundary_.find_encroached(cavity_, where_, encroached_segments_, encroached_faces_);
+    return encroached_segments_.empty() && encroached_faces_.empty();
+}
+
+double VertexMover::try_point(const Vec3& p, double limit) {
+    Triangulation& tri = mesh_.triangulation();
+    ++statistics_.evaluations;
+    if (!tri.find_conflict_cavity(p, filling_[0], cavity_)) return kNoAngleCosine;
+    const bool inside = where_.carrier == CarrierKind::region;
+    if (inside && mesh_.cell(cavity_.tets[0]).value() != where_.carrier_id) return kNoAngleCosine;
+    for (std::size_t i = 0; i < filling_.size(); ++i)
+        if (filling_cosine_[i] > limit && !tri.in_last_cavity(filling_[i])) return kNoAngleCosine;
+    const double cosine = judge_star(mesh_, judge_, cavity_, where_, limit);
+    if (cosine > limit) return kNoAngleCosine;
+    if (!inside && (!mesh_.holds_carrier(cavity_, where_) || mesh_.would_break(cavity_, where_))) return kNoAngleCosine;
+    return encroaches_nothing() ? cosine : kNoAngleCosine;
+}
+
+/// Is everything that changed at least as good as `limit`, and nothing labelled in it encroached?
+bool VertexMover::fits(double limit) const {
+    for (const TetId t : changed_) {
+        if (!mesh_.tets().is_live(t)) continue;
+        if (judge_.counts(t) && judge_.badness(t) > limit) return false;
+        if (boundary_.has_encroached(t)) return false;
+    }
+    return true;
+}
+
+/// Puts the vertex at p, if what comes of it is as promised.
+bool VertexMover::put(const Vec3& p, double limit) {
+    Triangulation& tri = mesh_.triangulation();
+    if (!tri.find_conflict_cavity(p, filling_[0], cavity_)) return false;
+    std::erase_if(filling_, [&](TetId t) { return tri.in_last_cavity(t); });
+    mesh_.save(cavity_.tets, cavity_before_);
+    mesh_.reinsert(vertex_, cavity_, where_);
+    changed_ = tri.new_tets();
+    changed_.insert(changed_.end(), filling_.begin(), filling_.end());
+    if (fits(limit)) return true;
+    ++statistics_.undone;
+    mesh_.undo_insertion(vertex_, where_, cavity_before_);
+    filling_.insert(filling_.end(), tri.new_tets().begin(), tri.new_tets().end());
+    judge_filling();
+    return false;
+}
+
+bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
+    if (!look_at_star(v)) return false;
+    propose(worst, samples);
+    if (!take_out()) return false;
+    const double limit = star_cosine_ - std::max(kWorthwhile, kGain * (star_cosine_ - goal));
+    double best = limit;
+    ranked_.clear();
+    for (const Vec3& p : proposals_) {
+        const double cosine = try_point(p, best);
+        if (cosine > best) continue;
+        ranked_.push_back({p, cosine});
+        if (cosine <= goal) break;                                    // good enough
+        if (where_.carrier == CarrierKind::region) best = cosine;     // inside, nothing can spoil the best one later
+    }
+    std::stable_sort(ranked_.begin(), ranked_.end(), [](const Candidate& a, const Candidate& b) { return a.cosine < b.cosine; });
+    for (std::size_t k = 0; k < std::min(kTrials, ranked_.size()); ++k)
+        if (put(ranked_[k].point, limit)) {
+            ++statistics_.moves;
+            return true;
+        }
+    put_back();
+    return false;
+}
+
+bool VertexMover::smooth(VertexId v, double floor) {
+    if (!look_at_star(v)) return false;
+    proposals_.clear();
+    const double reach = kReach * mean_edge_;
+    offer(optimal_, reach);
+    offer(0.5 * optimal_, reach);
+    if (proposals_.empty() || norm(proposals_[0] - home_) < 0.01 * mean_edge_ || !take_out()) return false;
+    const double limit = std::max(floor, star_cosine_);
+    for (const Vec3& p : proposals_)
+        if (try_point(p, limit) <= limit && put(p, limit)) {
+            ++statistics_.smoothings;
+            return true;
+        }
+    put_back();
+    return false;
+}
+
+bool VertexMover::remove(VertexId v, double limit) {
+    if (!look_at_star(v) || !take_out()) return false;
+    limit = std::max(limit, star_cosine_ - kWorthwhile);
+    changed_ = filling_;
+    if (fits(limit)) {
+        ++statistics_.removals;
+        return true;
+    }
+    put_back();
+    return false;
+}
+
+}  // namespace wellmesh

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moves one vertex along its carrier, or takes it out. The vertex is taken out of the triangulation once; every candidate is judged by its
+// cavity there and nothing is inserted for a trial, so the triangulation stays Delaunay, and a candidate that would leave anything encroached
+// is refused, so it stays Gabriel.
+//
+// Sampled relocation in the spirit of [Tournois09] and [EdelsbrunnerEtAl00]; the optimal-Delaunay point is [ChenXu04]'s: the mean of the
+// circumcentres of the star, weighted by volume. On a facet or segment it is projected: by reflection the tangential part is the same.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conforming/boundary_refiner.hpp"
+#include "conforming/conforming_mesh.hpp"
+#include "shape/tet_judge.hpp"
+
+namespace wellmesh {
+
+struct MoveStatistics {
+    std::uint64_t moves = 0, smoothings = 0, removals = 0, attempts = 0, evaluations = 0, undone = 0;
+};
+
+class VertexMover {
+public:
+    VertexMover(ConformingMesh& mesh, BoundaryRefiner& boundary, const TetJudge& judge, std::uint64_t seed)
+        : mesh_(mesh), boundary_(boundary), judge_(judge), seed_(seed) {}
+
+    /// Moves v so that the worst tetrahedron of its star gets better, to the first place found that reaches `goal`, or the best.
+    /// @param worst  a tetrahedron of the star that is to be mended. @return was it moved?
+    bool move(VertexId v, TetId worst, double goal, unsigned samples);
+    /// Moves v to its optimal-Delaunay point, or half the way, if nothing gets worse than `floor` or than the star is now.
+    bool smooth(VertexId v, double floor);
+    /// Takes v out if what fills the hole is at least as good as `limit`, or better than the star was.
+    bool remove(VertexId v, double limit);
+
+    /// Tetrahedra that the last success made; some ids may be dead.
+    [[nodiscard]] const std::vector<TetId>& changed() const { return changed_; }
+    [[nodiscard]] const MoveStatistics& statistics() const { return statistics_; }
+
+private:
+    struct Candidate {
+        Vec3 point{};
+        double cosine = 0;
+    };
+
+    bool look_at_star(VertexId v);
+    bool take_out();
+    void judge_filling();
+    void put_back();
+    bool put(const Vec3& p, double limit);
+    void propose(TetId worst, unsigned samples);
+    void offer(const Vec3& offset, double reach);
+    [[nodiscard]] bool find_placement();
+    [[nodiscard]] Vec3 on_carrier(const Vec3& p) const;
+    /// Cosine of the star that p would get, more than `limit` as soon as that is certain. Leaves p's cavity.
+    [[nodiscard]] double try_point(const Vec3& p, double limit);
+    [[nodiscard]] bool encroaches_nothing();
+    [[nodiscard]] bool fits(double limit) const;
+
+    ConformingMesh& mesh_;
+    BoundaryRefiner& boundary_;
+    const TetJudge& judge_;
+    std::uint64_t seed_, attempt_ = 0;
+
+    // The vertex at hand.
+    VertexId vertex_{};
+    Placement where_{};
+    Vec3 home_{}, optimal_{}, middle_{};  // offsets from home: optimal-Delaunay point, mean of the neighbours
+    double star_cosine_ = 0, mean_edge_ = 0;
+
+    Hole hole_;
+    Cavity cavity_;
+    ConformingMesh::Snapshot star_before_, cavity_before_;
+    std::vector<Vec3> proposals_;
+    std::vector<Candidate> ranked_;
+    std::vector<TetId> filling_, changed_;
+    std::vector<double> filling_cosine_;
+    std::vector<Subsegment> encroached_segments_;
+    std::vector<Subface> encroached_faces_;
+    MoveStatistics statistics_;
+};
+
+/// Cosine of the worst tetrahedron of the star that cavity.point would get at this placement, more than `limit` as soon as that is certain.
+[[nodiscard]] double judge_star(const ConformingMesh& mesh, const TetJudge& judge, const Cavity& cavity, const Placement& where, double limit);
+
+/// Steps smaller than this gain in cosine are no progress.
+inline constexpr double kWorthwhile = 1e-4;
+
+}  // namespace wellmesh
