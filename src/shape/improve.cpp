@@ -14,7 +14,8 @@ constexpr unsigned kMoveSamples = 30, kPatientMoveSamples = 60;
 constexpr unsigned kPatientPasses = 2;    // patience with moves saves vertices: smoothing and splitting come after
 constexpr unsigned kSmoothingRounds = 4;
 constexpr double kWorthRepeating = 0.85;  // part of the bad tetrahedra that may be left for another pass or smoothing to be tried
-constexpr unsigned kSplitRounds = 16;     // on one rung
+constexpr unsigned kSplitRounds = 16;     // on one rung,
+constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing out again, else removals and splits may undo each other for ever
 constexpr double kVertexBudget = 1.5;     // splits may not add more than half the vertices again,
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
 constexpr unsigned kTriesUntouched = 3;   // failures after which a tetrahedron rests until its neighbourhood changes
@@ -122,9 +123,9 @@ bool ShapeImprover::mend(const Bad& bad, unsigned samples, LastResort last_resor
             return true;
         }
     }
-    if (last_resort == LastResort::remove_or_insert) {
+    if (last_resort != LastResort::none) {
         for (const VertexId v : order)
-            if (mover_.remove(v, goal_cosine_)) {
+            if (last_resort == LastResort::remove_or_insert && mover_.remove(v, goal_cosine_)) {
                 touch(mover_.changed());
                 return true;
             }
@@ -209,7 +210,7 @@ RunGuard::Verdict ShapeImprover::smooth_around_bad(unsigned rings) {
 }
 
 /// All that moves can do, then what single removals and insertions can.
-RunGuard::Verdict ShapeImprover::settle() {
+RunGuard::Verdict ShapeImprover::settle(LastResort last_resort) {
     RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
     if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::none);
     for (unsigned r = 0; r < kSmoothingRounds && !left_.empty() && verdict == RunGuard::Verdict::go_on; ++r) {
@@ -218,7 +219,7 @@ RunGuard::Verdict ShapeImprover::settle() {
         if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::none);
         if (!worth_it(before, left_.size())) break;
     }
-    if (!left_.empty() && verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::remove_or_insert);
+    if (!left_.empty() && verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, last_resort);
     return verdict;
 }
 
@@ -261,7 +262,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
             last_worst = worst_cosine();
         }
         verdict = split_worse_than(rung_cosine);
-        if (verdict == RunGuard::Verdict::go_on) verdict = settle();
+        if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
     reached = !below();
     if (!reached && last && last_worst <= worst_cosine()) mesh_ = std::move(*last);
@@ -286,7 +287,7 @@ RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
     goal_cosine_ = cosine_of_degrees(angle_deg);
     judge_.set_goal(goal_cosine_, angle_deg >= kAspectFromDeg ? kMaxAspect : TetJudge::kNoAspect);
     collect_bad();
-    RunGuard::Verdict verdict = settle();
+    RunGuard::Verdict verdict = settle(LastResort::remove_or_insert);
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left_.empty(); rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices, reached);

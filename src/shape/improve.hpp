@@ -57,9 +57,9 @@ private:
         std::uint64_t pass = 0;
         unsigned failures = 0;
     };
-    enum class LastResort { none, remove_or_insert };
+    enum class LastResort : std::uint8_t { none, insert, remove_or_insert };
 
-    RunGuard::Verdict settle();
+    RunGuard::Verdict settle(LastResort last_resort);
     RunGuard::Verdict pass(unsigned samples, LastResort last_resort);
     RunGuard::Verdict passes(unsigned samples, unsigned most, LastResort last_resort);
     bool mend(const Bad& bad, unsigned samples, LastResort last_resort);
