@@ -23,8 +23,8 @@ from common import DEFAULT_PROGRAM, diagonal, judge, package_version, run, tetge
 
 RATIO_LIMIT = 1.10
 
-# Edge length h and tetrahedra per volume: a mesh has about 1 / (0.0896 h^3) of them (the unit cube has 11165 at 0.1; fewer at the boundary's expense).
-VOLUME_OVER_CUBED_SIZE = 0.0896
+# Edge length h and tetrahedra per volume: a mesh has about 1 / (0.112 h^3) of them (fewer where the lattice fills most of it, more where it is thin).
+VOLUME_OVER_CUBED_SIZE = 0.112
 # Mean volume of a tetrahedron is about half the greatest.
 GREATEST_OVER_MEAN_VOLUME = 2.1
 
@@ -242,7 +242,7 @@ class Bench:
         start = f"{domain.name:12} {transform.name:18} {tets:7d} {seed:4d}"
         failures = []
         common = ["--size", repr(size), "--seed", str(seed)]
-        result, report = self.mesh(model, [*common, "--min-dihedral", "20"])
+        result, report = self.mesh(model, [*common, "--min-dihedral", self.arguments.min_dihedral])
         if result.code != 0:
             failures.append(f"exit {result.code}: {result.errors[-300:] or (report or {}).get('termination', '')}")
         elif not report:
@@ -250,7 +250,7 @@ class Bench:
         cells = f"{start} {result.code:4d}"
         tolerance = transform.tolerance or 1e-9
         if report:
-            verdict = judge(self.arguments.referee, os.path.join(self.folder, "out.mesh"), model, 20, transform.tolerance,
+            verdict = judge(self.arguments.referee, os.path.join(self.folder, "out.mesh"), model, self.arguments.min_dihedral, transform.tolerance,
                             compare_with=self.arguments.program if self.arguments.compare else None)
             failures += [f"referee: {f}" for f in verdict["failures"]] or ([] if verdict["ok"] else ["referee: not ok"])
             failures += volume_failures(here, verdict, tolerance)
@@ -260,7 +260,7 @@ class Bench:
             edge = report["certificate"]["shape"]["all"]["mean_edge"] / size
             cells += (f" {report['vertices']:8d} {report['tets']:8d} {angle:7.2f} {quality.get('max_radius_edge', math.nan):5.2f} "
                       f"{quality.get('max_aspect', math.nan):6.1f} {edge:6.3f} {result.seconds:7.2f} {result.memory / 2**20:6.0f}")
-            plain_run, plain = self.mesh(model, [*common, "--min-dihedral", "0"])
+            plain_run, plain = self.mesh(model, [*common, "--min-dihedral", "0", "--seeding", self.arguments.plain_seeding])
             if plain_run.code != 0 or not plain:
                 failures.append(f"exit {plain_run.code} with --min-dihedral 0: {plain_run.errors[-300:]}")
             if plain:
@@ -311,6 +311,8 @@ def main():
     parser.add_argument("--tets", action="append", type=int, help="about so many tetrahedra (may be repeated; default 1000, 20000, 200000)")
     parser.add_argument("--seed", action="append", type=int, help="default: 1, and 1 to 5 at 20000")
     parser.add_argument("--rotation-seed", type=int, default=1)
+    parser.add_argument("--min-dihedral", default="20", metavar="DEG")
+    parser.add_argument("--plain-seeding", choices=["auto", "off"], default="auto", help="of the run with --min-dihedral 0 that vertices are compared with")
     parser.add_argument("--limit", type=float, default=300, help="seconds for a run of a mesh generator")
     parser.add_argument("--keep", help="folder for the inputs of rows that miss")
     arguments = parser.parse_args()
