@@ -19,6 +19,7 @@ constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing ou
 constexpr double kVertexBudget = 1.5;     // splits may not add more than half the vertices again,
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
 constexpr unsigned kTriesUntouched = 3;   // failures after which a tetrahedron rests until its neighbourhood changes
+constexpr unsigned kTriesInAll = 4;       // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 constexpr double kRungDeg = 5;
 /// From this angle on the aspect ratio is a goal too. The angle alone does not bound it: 30 degrees leave needles of R/r up to 11 at R/L = 2.
 constexpr double kAspectFromDeg = 30, kMaxAspect = 8;
@@ -101,11 +102,11 @@ bool ShapeImprover::mend(const Bad& bad, unsigned samples, LastResort last_resor
     for (const VertexId v : bad.corners) last_change = std::max(last_change, touched_[v.index()]);
     const std::uint64_t key = key_of(bad.corners);
     if (const auto known = stuck_.find(key); known != stuck_.end()) {
-        Stuck& stuck = known->second;
-        if (stuck.pass == pass_) return true;  // listed already; changes around it are for the next pass
-        if (stuck.when < last_change) stuck.failures = 0;
-        if (stuck.failures >= kTriesUntouched) {
-            stuck.pass = pass_;
+        Stuck& before = known->second;
+        if (before.pass == pass_) return true;  // listed already; changes around it are for the next pass
+        if (before.when < last_change) before.failures = 0;
+        if (before.failures >= kTriesUntouched) {
+            before.pass = pass_;
             return false;
         }
     }
@@ -123,7 +124,9 @@ bool ShapeImprover::mend(const Bad& bad, unsigned samples, LastResort last_resor
             return true;
         }
     }
-    if (last_resort != LastResort::none) {
+    Stuck& stuck = stuck_[key];
+    if (last_resort != LastResort::none && stuck.last_resorts < kTriesInAll) {
+        ++stuck.last_resorts;
         for (const VertexId v : order)
             if (last_resort == LastResort::remove_or_insert && mover_.remove(v, goal_cosine_)) {
                 touch(mover_.changed());
@@ -134,8 +137,9 @@ bool ShapeImprover::mend(const Bad& bad, unsigned samples, LastResort last_resor
             return true;
         }
     }
-    Stuck& stuck = stuck_[key];
-    stuck = {clock_, pass_, stuck.failures + 1};
+    stuck.when = clock_;
+    stuck.pass = pass_;
+    ++stuck.failures;
     return false;
 }
 
@@ -191,7 +195,8 @@ RunGuard::Verdict ShapeImprover::smooth_around_bad(unsigned rings) {
         around_.push_back(v);
     };
     for (const Bad& b : left_)
-        for (const VertexId v : b.corners) take(v);
+        if (stuck_[key_of(b.corners)].smoothings++ < kTriesInAll)
+            for (const VertexId v : b.corners) take(v);
     std::size_t done = 0;
     for (unsigned r = 0; r < rings; ++r)
         for (const std::size_t end = around_.size(); done < end; ++done) {

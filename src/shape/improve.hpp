@@ -55,7 +55,8 @@ private:
     struct Stuck {
         std::uint64_t when = 0;
         std::uint64_t pass = 0;
-        unsigned failures = 0;
+        unsigned failures = 0;                      // since its neighbourhood changed last
+        unsigned smoothings = 0, last_resorts = 0;  // in all
     };
     enum class LastResort : std::uint8_t { none, insert, remove_or_insert };
 
