@@ -154,8 +154,12 @@ void LatticeSeeder::build(GradedOctree& tree, std::uint32_t node, const std::vec
     for (std::uint32_t k = 0; k < 8; ++k) build(tree, first + k, here, at_centre);
 }
 
+/// The vertex nearest to p is a corner of its cavity; the nearest subface need not be a face of it (p may lie beside an edge or a corner of the
+/// boundary), so both are looked at. Beside an edge the distance may come out a little less: no corner is near there, and nothing is encroached.
 bool LatticeSeeder::is_clear(const Vec3& p, double clearance) const {
     for (const TetId t : cavity_.tets) {
+        for (const VertexId v : mesh_.tets().corners(t))
+            if (v != kInfiniteVertex && mesh_.info(v).carrier != CarrierKind::region && squared_distance(p, mesh_.point(v)) < clearance * clearance) return false;
         if (!mesh_.has_labels(t)) continue;
         for (unsigned f = 0; f < 4; ++f) {
             if (!mesh_.labels(t).facets[f].valid()) continue;

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
+#include "core/vec3_math.hpp"
 #include "support/expect_result.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
@@ -58,6 +61,26 @@ TEST(LatticeSeeding, InsideIsTheLattice) {
         EXPECT_NEAR(staged.shape(t).min_dihedral_deg, 60, 0.1);
     });
     EXPECT_GT(inner, 5000U);
+}
+
+/// Sizes at which a point of the lattice falls beside a corner of the cavity, where no subface is near in the mesh.
+TEST(LatticeSeeding, KeepsClearOfCornersThatPointInwards) {
+    for (double edge_length = 0.2; edge_length < 0.36; edge_length += 0.002) {
+        const MeshOptions options = sized(edge_length);
+        StagedMesh staged(cube_with_cavity(), options);
+        staged.conform();
+        Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+        LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes()).seed();
+        const double clearance = 0.4 * kCircumradiusPerEdgeLength * edge_length;  // 0.5, but for places beside an edge
+        for (std::size_t i = 0; i < staged.mesh.vertex_slots(); ++i) {
+            if (staged.mesh.info(VertexId{i}).reason != InsertionReason::lattice) continue;
+            const Vec3& p = staged.mesh.point(VertexId{i});
+            // The cavity is the middle one of 3 x 3 x 3 unit cells.
+            const Vec3 nearest{std::clamp(p.x, 1.0, 2.0), std::clamp(p.y, 1.0, 2.0), std::clamp(p.z, 1.0, 2.0)};
+            ASSERT_GE(distance(p, nearest), clearance) << edge_length;
+            ASSERT_GE(std::min({p.x, p.y, p.z, 3 - p.x, 3 - p.y, 3 - p.z}), clearance) << edge_length;
+        }
+    }
 }
 
 TEST(LatticeSeeding, WhereNothingIsAskedNothingChanges) {
