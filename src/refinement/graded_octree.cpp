@@ -74,8 +74,17 @@ std::vector<LatticePoint> GradedOctree::lattice() const {
         const Box b = box(i);
         points.push_back({{b.lo.x + b.side / 2, b.lo.y + b.side / 2, b.lo.z + b.side / 2}, b.side});
         const unsigned shift = kMaxDepth - n.depth;
-        for (std::uint32_t k = 0; k < 8; ++k)
+        for (std::uint32_t k = 0; k < 8; ++k) {
+            // It is the first corner of the leaf beyond, if that is one of the same size: so most corners are listed once.
+            if (k > 0) {
+                const std::array<std::uint32_t, 3> at{n.at[0] + (k & 1U), n.at[1] + ((k >> 1) & 1U), n.at[2] + (k >> 2)};
+                if (std::max({at[0], at[1], at[2]}) < (1U << n.depth)) {
+                    const Node& beyond = nodes_[find(n.depth, at)];
+                    if (beyond.used && beyond.first_child == 0 && beyond.depth == n.depth) continue;
+                }
+            }
             corners.push_back({{(n.at[0] + (k & 1U)) << shift, (n.at[1] + ((k >> 1) & 1U)) << shift, (n.at[2] + (k >> 2)) << shift}, n.depth});
+        }
     }
     std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at != b.at ? a.at < b.at : a.depth > b.depth; });
     const double unit = std::ldexp(side_, -static_cast<int>(kMaxDepth));

@@ -136,6 +136,10 @@ std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
 
 /// Splits until leaves are no larger than the lattice constants of the cells that they meet.
 void LatticeSeeder::build(GradedOctree& tree, std::uint32_t node, const std::vector<std::uint32_t>& faces, TetId near) {
+    if (stopped_ || !may_go_on(0)) {
+        stopped_ = true;
+        return;
+    }
     const GradedOctree::Box box = tree.box(node);
     const Vec3 hi{box.lo.x + box.side, box.lo.y + box.side, box.lo.z + box.side};
     std::vector<std::uint32_t> here;
@@ -221,6 +225,7 @@ std::vector<LatticePoint> LatticeSeeder::find_lattice(double base) {
     std::vector<std::uint32_t> all(faces_.size());
     std::iota(all.begin(), all.end(), 0U);
     build(tree, 0, all, TetId{});
+    if (stopped_) return {};
     tree.balance();
     return tree.lattice();
 }

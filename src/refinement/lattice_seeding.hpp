@@ -49,6 +49,7 @@ private:
     std::vector<double> radius_;   // by cell: circumradius bound; infinite: none
     std::vector<double> spacing_;  // by cell: lattice constant
     std::vector<Face> faces_;
+    bool stopped_ = false;
     Cavity cavity_;
     std::vector<Subsegment> encroached_segments_;
     std::vector<Subface> encroached_faces_;
