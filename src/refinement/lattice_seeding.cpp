@@ -75,7 +75,9 @@ bool LatticeSeeder::split_boundary(double coarseness) {
     const TetStore& tets = mesh_.tets();
     std::vector<Subsegment> segments;
     std::vector<Subface> faces;
+    std::size_t vertices_before = 0;
     do {
+        vertices_before = mesh_.vertex_count();
         segments.clear();
         faces.clear();
         for (std::size_t i = 0; i < tets.slots(); ++i) {
@@ -110,7 +112,7 @@ bool LatticeSeeder::split_boundary(double coarseness) {
             boundary_.split(s, request);
             boundary_.conform();
         }
-    } while (!segments.empty() || !faces.empty());
+    } while (mesh_.vertex_count() > vertices_before);  // what rounding keeps from being split is left to refinement
     return true;
 }
 
