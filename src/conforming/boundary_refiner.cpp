@@ -100,12 +100,6 @@ void BoundaryRefiner::find_encroached(const Cavity& cavity, const Placement& whe
 }
 
 void BoundaryRefiner::inserted(VertexId v) {
-    // e_v, the shortest edge at the new vertex: its star is at hand.
-    double shortest = 1e300;
-    for (const TetId t : mesh_.triangulation().new_tets())
-        for (const VertexId w : mesh_.tets().corners(t))
-            if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
-    mesh_.info(v).insertion_length = std::sqrt(shortest);
     const InsertionReason reason = mesh_.info(v).reason;
     if (reason == InsertionReason::encroachment || reason == InsertionReason::recovery)
         shortest_for_conformity_ = std::min(shortest_for_conformity_, mesh_.info(v).insertion_length);

@@ -122,7 +122,7 @@ public:
     void clear_facet(FacetId f);                           ///< takes all labels of f away, O(boundary)
     void set_cell(TetId t, CellId c) { cell_[t.index()] = c; }
 
-    /// Inserts cavity.point. Labels and cells follow; constraints that the point destroys without lying on them are noted as broken.
+    /// Inserts cavity.point and notes its insertion length. Labels and cells follow; constraints that the point destroys without lying on them are noted as broken.
     VertexId insert(const Cavity& cavity, const Placement& where, const VertexInfo& info);
     /// Puts a removed vertex back, or elsewhere on its carrier: like insert, keeping id and info.
     void reinsert(VertexId v, const Cavity& cavity, const Placement& where);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Insertion of a vertex into a labelled mesh: what the new tetrahedra inherit, and how the surface is led through a point on it.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "conforming/conforming_mesh.hpp"
 #include "core/check.hpp"
@@ -238,6 +240,12 @@ VertexId ConformingMesh::insert(const Cavity& cavity, const Placement& where, co
     if (where.carrier == CarrierKind::facet) on_facet_[where.carrier_id].push_back(v);
     if (where.carrier == CarrierKind::segment) on_segment_[where.carrier_id].push_back(v);
     commit(v, cavity, where);
+    // e_v: the star is at hand.
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const TetId t : tri_.new_tets())
+        for (const VertexId w : tri_.tets().corners(t))
+            if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(cavity.point, point(w)));
+    info_.back().insertion_length = std::sqrt(shortest);
     return v;
 }
 

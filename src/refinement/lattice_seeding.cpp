@@ -244,11 +244,6 @@ LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near) {
     if (!encroached_segments_.empty() || !encroached_faces_.empty()) return Outcome::encroaches;
     const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::region, InsertionReason::lattice, cell.value(), VertexId{}, 0});
     near = tri.tet_of(v);
-    double shortest = kInfinity;
-    for (const TetId t : tri.new_tets())
-        for (const VertexId w : mesh_.tets().corners(t))
-            if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
-    mesh_.info(v).insertion_length = std::sqrt(shortest);
     return Outcome::inserted;
 }
 

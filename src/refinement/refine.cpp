@@ -241,11 +241,6 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
     if (boundary_.recorder) event = describe(t, reason, centre, radius);
     const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::region, reason, cell.value(), parent, 0});
     ++statistics_.insertions;
-    double shortest = 1e300;
-    for (const TetId s : tri.new_tets())
-        for (const VertexId w : mesh_.tets().corners(s))
-            if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
-    mesh_.info(v).insertion_length = std::sqrt(shortest);
     if (boundary_.recorder) {
         event.vertex = v;
         event.point = mesh_.point(v);

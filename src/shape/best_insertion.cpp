@@ -64,11 +64,6 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
         mesh_.undo_insertion(v, where, before_);
         return {};
     }
-    double shortest = std::numeric_limits<double>::infinity();
-    for (const TetId n : changed_)
-        for (const VertexId w : mesh_.tets().corners(n))
-            if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(mesh_.point(v), mesh_.point(w)));
-    mesh_.info(v).insertion_length = std::sqrt(shortest);
     ++count_;
     return v;
 }
