@@ -83,6 +83,17 @@ Mode read_mode(const std::string& text) {
     throw CLI::ValidationError("--mode", fmt::format("must be practical or certified, not '{}'", text));
 }
 
+std::string strategy_names(const char* separator) {
+    std::vector<const char*> names;
+    for (const SliverStrategy strategy : kSliverStrategies) names.push_back(to_string(strategy));
+    return fmt::format("{}", fmt::join(names, separator));
+}
+
+SliverStrategy read_strategy(const std::string& text) {
+    if (const auto strategy = parse_sliver_strategy(text)) return *strategy;
+    throw CLI::ValidationError("--slivers", fmt::format("must be one of {}, not '{}'", strategy_names(" "), text));
+}
+
 /// The paper's constants, and the mode, which has its own defaults for two goals (they hold where the goal is not given).
 void add_paper_flags(CLI::App& command, MeshOptions& options, const CLI::Option* ratio, const CLI::Option* angle) {
     command.add_option_function<std::string>(
@@ -99,6 +110,7 @@ void add_paper_flags(CLI::App& command, MeshOptions& options, const CLI::Option*
         ->type_name("SIGMA");
     command.add_flag("--invariants", options.invariants, "report what the paper claims of the insertions, and what they did");
     command.parse_complete_callback([&options, ratio, angle, rho] {
+        if (options.slivers == SliverStrategy::none && angle->count() == 0) options.quality.min_dihedral_angle_deg = 0;
         if (options.mode != Mode::certified) return;
         const MeshOptions certified = certified_options();
         if (ratio->count() == 0 && rho->count() == 0) options.quality.max_radius_edge_ratio = certified.quality.max_radius_edge_ratio;
@@ -121,6 +133,10 @@ void add_mesh_flags(CLI::App& command, MeshOptions& options) {
         ->type_name("RATIO")->capture_default_str();
     const CLI::Option* angle = command.add_option("--min-dihedral", options.quality.min_dihedral_angle_deg, "least dihedral angle, in degrees; 0 ignores slivers")
         ->type_name("DEG")->capture_default_str();
+    command.add_option_function<std::string>(
+        "--slivers", [&options](const std::string& text) { options.slivers = read_strategy(text); },
+        "how slivers are removed: none (they stay; --min-dihedral defaults to 0 then), a published way, or best (docs/strategies.md)")
+        ->type_name(strategy_names("|"))->default_str(to_string(options.slivers));
     command.add_option_function<std::string>(
         "--seeding",
         [&options](const std::string& text) {

@@ -66,6 +66,7 @@ Json to_json(const MeshOptions& options) {
     json["time_limit_seconds"] = options.limits.time ? Json(static_cast<double>(options.limits.time->count()) / 1000) : Json(nullptr);
     json["coplanar_tolerance"] = or_null(options.coplanar_tolerance);
     json["seed"] = options.seed;
+    json["slivers"] = to_string(options.slivers);
     json["seeding"] = options.seeding == Seeding::automatic ? "auto" : "off";
     return json;
 }

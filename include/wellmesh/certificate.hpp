@@ -64,6 +64,8 @@ struct Certificate {
 /// Bounds and tolerances of a check. The defaults are the referee's.
 struct CertifyOptions {
     std::optional<double> max_radius_edge_ratio{}, min_dihedral_angle_deg{}, max_aspect_ratio{}, min_sigma{}, max_volume{};
+    /// Instead of the two without "boundary", for tetrahedra with a vertex on a constraint triangle. Empty: no other than elsewhere.
+    std::optional<double> min_dihedral_boundary_deg{}, min_sigma_boundary{};
     double tolerance = 1e-9;        ///< how far a subface may leave the PLC, relative to the PLC's diagonal
     double flat_angle_rad = 1e-6;   ///< two constraint triangles that bend less than this make no segment
     std::stop_token stop{};         ///< polled between claims: the ones not reached stay `not_checked`

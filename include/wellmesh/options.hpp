@@ -2,10 +2,12 @@
 // What a caller may ask for. Every default is written here and nowhere else.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace wellmesh {
@@ -14,20 +16,42 @@ namespace wellmesh {
 /// holds, its own definition of a sliver, and every claim checked on the run's insertions; nothing but what the paper describes (docs/theory.md).
 enum class Mode { practical, certified };
 
-/// Constants of the paper. Empty: the mode's own, below.
+/// Constants of the paper. Empty: the mode's own, below. Who uses which: docs/strategies.md.
 struct PaperConstants {
     std::optional<double> delta{};   ///< radius of a picking region over the circumradius
-    std::optional<double> b{};       ///< certified: new slivers below b circumradii of what was split are avoided
-    std::optional<double> sigma0{};  ///< certified: slivers have volume / shortest edge^3 below this
+    std::optional<double> b{};       ///< certified, refine, improve: new slivers below b circumradii of what was split count as small
+    std::optional<double> sigma0{};  ///< certified, refine, improve: slivers have volume / shortest edge^3 below this, whatever their angles
+    /// refine, improve: the same for tetrahedra that touch the boundary. Empty: sigma0.
+    std::optional<double> sigma0_boundary{};
 };
 inline constexpr double kPracticalDelta = 0.3;  ///< docs/decisions/0010
+inline constexpr double kPracticalB = 2;        ///< of refine; improve asks of every new tetrahedron to be better, however large
 inline constexpr double kCertifiedDelta = 0.05, kCertifiedB = 4.5, kCertifiedRadiusEdgeRatio = 20, kCertifiedSigma = 0.01;
+
+/// How slivers are kept away or removed: the systems that the paper compares with, each as its own source describes it, and this program's own
+/// way (docs/strategies.md). All of them keep the mesh Delaunay, conforming and Gabriel, and all end, whether the goal is reached or not.
+enum class SliverStrategy : std::uint8_t {
+    none,     ///< Delaunay refinement [Shewchuk98]; slivers stay
+    refine,   ///< slivers are split by points that make no new small ones [LiTeng01, section 3]
+    improve,  ///< the same, but only where the local mesh gets better [LiTeng01, section 6]
+    chew,     ///< uniform density, random points within half a unit of the circumcentres [Chew97]
+    exude,    ///< weights on the vertices [Cheng00]
+    perturb,  ///< vertices are smoothed and perturbed, none comes or goes [EdelsbrunnerEtAl00, Tournois09]
+    best      ///< all of it that helps; in certified mode what the paper describes
+};
+inline constexpr std::array kSliverStrategies{SliverStrategy::none, SliverStrategy::refine,  SliverStrategy::improve, SliverStrategy::chew,
+                                              SliverStrategy::exude, SliverStrategy::perturb, SliverStrategy::best};
+[[nodiscard]] const char* to_string(SliverStrategy strategy) noexcept;
+/// The strategy of this name; empty if there is none.
+[[nodiscard]] std::optional<SliverStrategy> parse_sliver_strategy(std::string_view name) noexcept;
 
 struct QualityGoals {
     /// Bound on circumradius / shortest edge of every tetrahedron. Below 2 there is no proof of termination.
     double max_radius_edge_ratio = 2.0;
     /// Every dihedral angle at least this many degrees; 0 ignores slivers.
     double min_dihedral_angle_deg = 20.0;
+    /// refine, improve: the same for tetrahedra that touch the boundary (a segment, a facet or an input vertex). Empty: no other than inside.
+    std::optional<double> min_dihedral_boundary_deg{};
 };
 
 struct SizeGoals {
@@ -52,6 +76,7 @@ struct MeshOptions {
     QualityGoals quality{};
     SizeGoals size{};
     Limits limits{};
+    SliverStrategy slivers = SliverStrategy::best;
     Seeding seeding = Seeding::automatic;
     /// Overrides the local planarity tolerance by which facets are merged and accepted, in input units.
     std::optional<double> coplanar_tolerance{};

@@ -2,6 +2,7 @@
 // Words for the public enumerations.
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/error.hpp"
+#include "wellmesh/options.hpp"
 #include "wellmesh/result.hpp"
 
 namespace wellmesh {
@@ -59,6 +60,25 @@ const char* to_string(Termination termination) noexcept {
         case Termination::cancelled: return "cancelled";
     }
     return "?";
+}
+
+const char* to_string(SliverStrategy strategy) noexcept {
+    switch (strategy) {
+        case SliverStrategy::none: return "none";
+        case SliverStrategy::refine: return "refine";
+        case SliverStrategy::improve: return "improve";
+        case SliverStrategy::chew: return "chew";
+        case SliverStrategy::exude: return "exude";
+        case SliverStrategy::perturb: return "perturb";
+        case SliverStrategy::best: return "best";
+    }
+    return "?";
+}
+
+std::optional<SliverStrategy> parse_sliver_strategy(std::string_view name) noexcept {
+    for (const SliverStrategy strategy : kSliverStrategies)
+        if (name == to_string(strategy)) return strategy;
+    return std::nullopt;
 }
 
 const char* to_string(DefectKind kind) noexcept {

@@ -17,6 +17,24 @@ constexpr double kLeastRadiusEdgeRatio = 0.612372435695794;
 constexpr double kLargestMinDihedralDeg = 70.528779365509308;
 constexpr double kLargest = std::numeric_limits<double>::max();  // excludes infinity
 
+/// Combinations of strategy and mode that make no sense.
+void check_strategy(const MeshOptions& options, std::vector<std::string>& problems) {
+    const char* const name = to_string(options.slivers);
+    if (options.mode == Mode::certified && options.slivers != SliverStrategy::best && options.slivers != SliverStrategy::refine) {
+        problems.push_back(fmt::format("slivers must be best or refine in certified mode, whose own way with slivers is that of the paper, not {}", name));
+        return;
+    }
+    switch (options.slivers) {
+        case SliverStrategy::none:
+        case SliverStrategy::best: return;
+        case SliverStrategy::refine:
+            if (options.mode == Mode::certified) return;
+            break;
+        default: break;
+    }
+    problems.push_back(fmt::format("slivers can not be {} yet in this version; none and best are there", name));
+}
+
 }  // namespace
 
 std::vector<std::string> check(const MeshOptions& options) {
@@ -37,6 +55,7 @@ std::vector<std::string> check(const MeshOptions& options) {
     if (const auto n = options.limits.max_vertices) need(*n >= 4, "max vertices", "at least 4", static_cast<double>(*n));
     if (const auto t = options.limits.time) need(t->count() > 0, "time limit", "above 0 milliseconds", static_cast<double>(t->count()));
     if (const auto d = options.coplanar_tolerance) need(*d >= 0 && *d <= kLargest, "coplanar tolerance", "a finite number, at least 0", *d);
+    check_strategy(options, problems);
     const std::vector<std::string> constants = check_paper_constants(options);
     problems.insert(problems.end(), constants.begin(), constants.end());
     return problems;

@@ -111,18 +111,19 @@ private:
         refiner.guard_edges();
         if (options_.mode == Mode::certified) set_sliver_rule(refiner, options_);
         if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 300'000 + 4 * expected_vertices(valid, refiner.sizes()));
-        if (const double theta = options_.quality.min_dihedral_angle_deg; theta > 0 && theta <= kPickingAngleDeg)
+        const bool best = options_.slivers == SliverStrategy::best;
+        if (const double theta = options_.quality.min_dihedral_angle_deg; best && theta > 0 && theta <= kPickingAngleDeg)
             refiner.set_sliver_cosine(std::cos(theta * (std::numbers::pi / 180)), kPickingCandidates);
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
-            // The paper has no seeds: its original mesh is made by its own rules.
-            if (options_.seeding == Seeding::automatic && options_.mode == Mode::practical) LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
+            // The published ways have no seeds: they begin with what Delaunay refinement makes.
+            if (best && options_.seeding == Seeding::automatic && options_.mode == Mode::practical) LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
             verdict = refiner.refine();
             finish_theory(recorder.get(), boundary, result_);
             count();
         });
         const double theta = options_.quality.min_dihedral_angle_deg;
-        if (verdict == RunGuard::Verdict::go_on && theta > 0)
+        if (verdict == RunGuard::Verdict::go_on && best && theta > 0)
             timed(Stage::shape, [&] {
                 ShapeImprover improver(mesh, boundary, refiner, guard_, options_.seed);
                 verdict = improver.improve(theta);
