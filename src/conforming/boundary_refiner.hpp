@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -125,8 +126,19 @@ void classify_cells(ConformingMesh& mesh);
 /// Distance from cavity.point to the nearest vertex, which is one of the cavity's: nearest neighbours are Delaunay neighbours.
 [[nodiscard]] double distance_to_nearest(const ConformingMesh& mesh, const Cavity& cavity);
 
-/// Point k (1, 2, ...) of a low-discrepancy sequence in the unit ball, disk (z = 0) or interval (y = z = 0); point 0 is the centre.
-/// No trigonometry: the same on every platform.
+/// A low-discrepancy sequence in the unit ball, disk (z = 0) or interval (y = z = 0), its own for each key. No trigonometry: the same on
+/// every platform.
+class PickingPoints {
+public:
+    PickingPoints(unsigned dimension, std::uint64_t key);
+    [[nodiscard]] Vec3 next();
+
+private:
+    unsigned dimension_, index_ = 0;
+    std::array<double, 3> start_;
+};
+
+/// Point k (1, 2, ...) of such a sequence; point 0 is the centre.
 [[nodiscard]] Vec3 picking_point(unsigned dimension, std::uint64_t key, unsigned k);
 
 }  // namespace wellmesh

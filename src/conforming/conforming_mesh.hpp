@@ -206,7 +206,7 @@ private:
     // scratch of one insertion
     std::vector<CapturedFace> captured_;
     std::vector<InteriorFace> interior_;
-    std::vector<Subsegment> interior_segments_;
+    std::vector<Subsegment> captured_segments_, interior_segments_;  // of the cavity's boundary; deleted by the insertion
     std::vector<LoopEdge> loop_;
     std::vector<FacetId> carrier_facets_;
     Hole undo_hole_;

@@ -25,6 +25,7 @@ double depth_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, 
 void ConformingMesh::capture(const Cavity& cavity) {
     const TetStore& tets = tri_.tets();
     captured_.resize(cavity.boundary.size());
+    captured_segments_.clear();
     for (std::size_t i = 0; i < cavity.boundary.size(); ++i) {
         const TetFace inside = cavity.boundary[i].inside;
         CapturedFace& c = captured_[i];
@@ -35,7 +36,10 @@ void ConformingMesh::capture(const Cavity& cavity) {
         const TetLabels& l = labels(inside.tet());
         c.facet = l.facets[inside.face()];
         const auto& slot = kFaceCorners[inside.face()];
-        for (std::size_t k = 0; k < 3; ++k) c.segments[k] = l.segments[kEdgeOf[slot[(k + 1) % 3]][slot[(k + 2) % 3]]];
+        for (std::size_t k = 0; k < 3; ++k) {
+            c.segments[k] = l.segments[kEdgeOf[slot[(k + 1) % 3]][slot[(k + 2) % 3]]];
+            if (c.segments[k].valid()) captured_segments_.push_back({c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], c.segments[k]});
+        }
     }
 }
 
@@ -57,11 +61,7 @@ void ConformingMesh::collect_interior(const Cavity& cavity, const Placement& whe
             const VertexId a = tets.corner(t, kEdgeCorners[e][0]), b = tets.corner(t, kEdgeCorners[e][1]);
             const auto known = [&](const Subsegment& s) { return same_edge(s.a, s.b, a, b); };
             if (std::any_of(interior_segments_.begin(), interior_segments_.end(), known)) continue;
-            bool on_boundary = false;
-            for (const CapturedFace& c : captured_)
-                for (std::size_t k = 0; k < 3 && !on_boundary; ++k)
-                    on_boundary = c.segments[k].valid() && same_edge(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], a, b);
-            if (!on_boundary) interior_segments_.push_back({a, b, l.segments[e]});
+            if (std::none_of(captured_segments_.begin(), captured_segments_.end(), known)) interior_segments_.push_back({a, b, l.segments[e]});
         }
     }
     const auto facets = facets_of(where);
@@ -75,10 +75,8 @@ void ConformingMesh::collect_interior(const Cavity& cavity, const Placement& whe
 }
 
 bool ConformingMesh::is_segment_edge(VertexId a, VertexId b) const {
-    for (const CapturedFace& c : captured_)
-        for (std::size_t k = 0; k < 3; ++k)
-            if (c.segments[k].valid() && same_edge(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], a, b)) return true;
-    return std::any_of(interior_segments_.begin(), interior_segments_.end(), [&](const Subsegment& s) { return same_edge(s.a, s.b, a, b); });
+    const auto is_it = [&](const Subsegment& s) { return same_edge(s.a, s.b, a, b); };
+    return std::any_of(captured_segments_.begin(), captured_segments_.end(), is_it) || std::any_of(interior_segments_.begin(), interior_segments_.end(), is_it);
 }
 
 /// Finds the subfaces of `facet` that the point's star replaces: the ones connected, not across subsegments, to where the point lies.

@@ -80,7 +80,11 @@ public:
     /// All tetrahedra in conflict with p. @param near  where to start walking.
     /// @return false, with cavity.duplicate set, if there is a vertex at p.
     bool find_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity);
-    /// After find_conflict_cavity and before any change: is t in that cavity?
+    /// The same from a tetrahedron that is in conflict with p, for as long as `accept` says yes to the boundary's faces, one by one as they
+    /// are found. @return false if it said no: the cavity is incomplete then. @pre p is no vertex's point
+    template <class Accept>
+    bool grow_conflict_cavity(const Vec3& p, TetId seed, Cavity& cavity, const Accept& accept);
+    /// After a cavity was found and before any change: is t in that cavity?
     [[nodiscard]] bool in_last_cavity(TetId t) const { return mark_[t.index()] == epoch_ + 1; }
     /// Tetrahedra of the star of v, ghosts included.
     void find_star(VertexId v, std::vector<TetId>& star);
@@ -166,3 +170,5 @@ private:
 };
 
 }  // namespace wellmesh
+
+#include "delaunay/cavity_inline.hpp"

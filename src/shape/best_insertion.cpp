@@ -7,7 +7,7 @@
 #include "conforming/place_point.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
-#include "shape/vertex_mover.hpp"
+#include "shape/star_judge.hpp"
 
 namespace wellmesh {
 namespace {
@@ -17,17 +17,17 @@ constexpr unsigned kSamplesInside = 40, kSamplesOnFacet = 30, kSamplesOnSegment 
 
 }  // namespace
 
-Vec3 BestInsertion::candidate(const Placement& where, const Vec3& centre, double reach, std::uint64_t key, unsigned k) const {
+/// @param unit  of the unit ball, disk or interval
+Vec3 BestInsertion::candidate(const Placement& where, const Vec3& centre, double reach, const Vec3& unit) const {
     if (where.carrier == CarrierKind::segment) {
         const Vec3 half = 0.5 * (mesh_.point(where.b) - mesh_.point(where.a));
-        return project_to_segment(mesh_.plc(), SegmentId{where.carrier_id}, centre + (kReach * picking_point(1, key, k).x) * half);
+        return project_to_segment(mesh_.plc(), SegmentId{where.carrier_id}, centre + (kReach * unit.x) * half);
     }
     if (where.carrier == CarrierKind::facet) {
         const ValidFacet& facet = mesh_.plc().facets[where.carrier_id];
-        const Vec3 u = (kReach * reach) * picking_point(2, key, k);
-        return project_to_facet(facet, centre + u.x * facet.axis_u + u.y * facet.axis_v);
+        return project_to_facet(facet, centre + (kReach * reach) * (unit.x * facet.axis_u + unit.y * facet.axis_v));
     }
-    return flush_to_exact_range(centre + (kReach * reach) * picking_point(3, key, k));
+    return flush_to_exact_range(centre + (kReach * reach) * unit);
 }
 
 VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit) {
@@ -38,20 +38,20 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
     Vec3 best{};
     double best_cosine = limit;
     bool found = false;
+    PickingPoints points(where.carrier == CarrierKind::region ? 3 : where.carrier == CarrierKind::facet ? 2 : 1, key);
     for (unsigned k = 0; k < samples; ++k) {
-        const Vec3 p = candidate(where, centre, reach, key, k);
+        const Vec3 p = candidate(where, centre, reach, k == 0 ? Vec3{} : points.next());
         ++evaluations_;
-        if (!tri.find_conflict_cavity(p, t, cavity_) || !tri.in_last_cavity(t)) continue;
-        if (where.carrier == CarrierKind::region && mesh_.cell(cavity_.tets[0]).value() != where.carrier_id) continue;
-        const double cosine = judge_star(mesh_, judge_, cavity_, where, best_cosine);
-        if (cosine > best_cosine) continue;
-        if (where.carrier != CarrierKind::region && (!mesh_.holds_carrier(cavity_, where) || mesh_.would_break(cavity_, where))) continue;
+        if (!tri.in_conflict(t, p)) continue;
+        StarJudge star(mesh_, judge_, where, p, best_cosine);
+        if (!tri.grow_conflict_cavity(p, t, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) continue;
         boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
         if (!encroached_segments_.empty() || !encroached_faces_.empty()) continue;
+        if (where.carrier != CarrierKind::region && (!mesh_.holds_carrier(cavity_, where) || mesh_.would_break(cavity_, where))) continue;
         best = p;
-        best_cosine = cosine;
+        best_cosine = star.worst();
         found = true;
-        if (cosine <= judge_.goal()) break;
+        if (best_cosine <= judge_.goal()) break;
     }
     if (!found || !tri.find_conflict_cavity(best, t, cavity_)) return {};
     mesh_.save(cavity_.tets, before_);

@@ -26,7 +26,7 @@ public:
 
 private:
     VertexId insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit);
-    [[nodiscard]] Vec3 candidate(const Placement& where, const Vec3& centre, double reach, std::uint64_t key, unsigned k) const;
+    [[nodiscard]] Vec3 candidate(const Placement& where, const Vec3& centre, double reach, const Vec3& unit) const;
 
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;

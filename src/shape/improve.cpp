@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "core/rng.hpp"
+#include "shape/corners.hpp"
 
 namespace wellmesh {
 namespace {
-
 constexpr unsigned kMoveSamples = 30, kPatientMoveSamples = 60;
 constexpr unsigned kPatientPasses = 2;    // patience with moves saves vertices: smoothing and splitting come after
 constexpr unsigned kSmoothingRounds = 4;
@@ -74,7 +74,10 @@ void ShapeImprover::collect_bad() {
 }
 
 void ShapeImprover::touch(const std::vector<TetId>& tets) {
-    if (touched_.size() < mesh_.vertex_slots()) touched_.resize(mesh_.vertex_slots() + 64, 0);
+    if (touched_.size() < mesh_.vertex_slots()) {
+        touched_.resize(mesh_.vertex_slots() + 64, 0);
+        tried_.resize(touched_.size());
+    }
     ++clock_;
     for (const TetId t : tets) {
         if (!mesh_.tets().is_live(t)) continue;
@@ -83,17 +86,6 @@ void ShapeImprover::touch(const std::vector<TetId>& tets) {
         if (!judge_.counts(t)) continue;
         if (const double cosine = judge_.shape_badness(t); cosine > goal_cosine_) push(t, cosine);
     }
-}
-
-/// The domain tetrahedron with these corners, if there is one.
-TetId ShapeImprover::find_tet(const Corners& corners) {
-    for (const VertexId v : corners)
-        if (!mesh_.triangulation().is_inserted(v)) return {};
-    const TetFace face = mesh_.triangulation().find_face(corners[0], corners[1], corners[2]);
-    if (!face.valid()) return {};
-    for (const TetFace side : {face, mesh_.tets().across(face)})
-        if (mesh_.tets().corner(side.tet(), side.face()) == corners[3] && mesh_.in_domain(side.tet())) return side.tet();
-    return {};
 }
 
 /// @return is the tetrahedron gone, or not to be tried now? If not, it is left over.
@@ -110,19 +102,19 @@ bool ShapeImprover::mend(const Bad& bad, unsigned samples, LastResort last_resor
             return false;
         }
     }
-    std::array<VertexId, 4> order = bad.corners;
-    std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
-        const auto ka = static_cast<int>(mesh_.info(a).carrier), kb = static_cast<int>(mesh_.info(b).carrier);
-        return ka != kb ? ka > kb : a < b;
-    });
+    const Corners order = freest_first(mesh_, bad.corners);
     for (const VertexId v : order) {
         if (mesh_.info(v).carrier == CarrierKind::input_vertex) continue;
-        const TetId t = find_tet(bad.corners);
+        Tried& tried = tried_[v.index()];
+        if (tried.when < touched_[v.index()]) tried = {};
+        if (tried.failures >= kTriesUntouched || (tried.failures > 0 && tried.pass == pass_)) continue;
+        const TetId t = find_tet(mesh_, bad.corners);
         if (!t.valid()) return true;
         if (mover_.move(v, t, goal_cosine_, samples)) {
             touch(mover_.changed());
             return true;
         }
+        tried = {clock_, pass_, tried.failures + 1};
     }
     Stuck& stuck = stuck_[key];
     if (last_resort != LastResort::none && stuck.last_resorts < kTriesInAll) {
@@ -132,7 +124,7 @@ bool ShapeImprover::mend(const Bad& bad, unsigned samples, LastResort last_resor
                 touch(mover_.changed());
                 return true;
             }
-        if (const TetId t = find_tet(bad.corners); t.valid() && insertion_.insert(t, bad.badness - kWorthwhile).valid()) {
+        if (const TetId t = find_tet(mesh_, bad.corners); t.valid() && insertion_.insert(t, bad.badness - kWorthwhile).valid()) {
             touch(insertion_.changed());
             return true;
         }
@@ -147,6 +139,7 @@ bool ShapeImprover::mend(const Bad& bad, unsigned samples, LastResort last_resor
 RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) {
     ++pass_;
     touched_.resize(std::max(touched_.size(), mesh_.vertex_slots()), 0);
+    tried_.resize(touched_.size());
     heap_.insert(heap_.end(), left_.begin(), left_.end());
     left_.clear();
     std::make_heap(heap_.begin(), heap_.end());
@@ -154,7 +147,7 @@ RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) 
         std::pop_heap(heap_.begin(), heap_.end());
         Bad bad = heap_.back();
         heap_.pop_back();
-        const TetId t = find_tet(bad.corners);
+        const TetId t = find_tet(mesh_, bad.corners);
         if (!t.valid()) continue;
         bad.badness = judge_.shape_badness(t);  // its corners may have moved since
         if (bad.badness <= goal_cosine_) continue;
@@ -164,7 +157,7 @@ RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) 
     }
     // Neighbours may have mended some of them since; a tetrahedron may be listed twice.
     std::erase_if(left_, [&](Bad& b) {
-        const TetId t = find_tet(b.corners);
+        const TetId t = find_tet(mesh_, b.corners);
         if (!t.valid()) return true;
         b.badness = judge_.shape_badness(t);
         return b.badness <= goal_cosine_;
@@ -237,7 +230,7 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
     for (const Bad& b : left_) {
         if (b.badness <= cosine) break;
         if (std::any_of(b.corners.begin(), b.corners.end(), [&](VertexId v) { return marked_[v.index()] == stamp; })) continue;
-        const TetId t = find_tet(b.corners);
+        const TetId t = find_tet(mesh_, b.corners);
         if (!t.valid()) continue;
         for (const VertexId v : b.corners) marked_[v.index()] = stamp;
         ++splits_;
@@ -274,19 +267,6 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
     return verdict;
 }
 
-/// Takes vertices out again where the goal holds without them: those that this stage put in, then others for as long as the mesh has more
-/// than it had at first.
-void ShapeImprover::prune(std::size_t first_new_slot, std::size_t vertices_at_start) {
-    for (const std::size_t first : {first_new_slot, mesh_.plc().vertices.size()}) {
-        std::size_t before = 0;
-        do {
-            before = mesh_.vertex_count();
-            for (std::size_t v = mesh_.vertex_slots(); v-- > first && (first == first_new_slot || mesh_.vertex_count() > vertices_at_start);)
-                if (mesh_.triangulation().is_inserted(VertexId{v})) mover_.remove(VertexId{v}, goal_cosine_);
-        } while (mesh_.vertex_count() < before);
-    }
-}
-
 RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
     const std::size_t vertices = mesh_.vertex_count(), slots = mesh_.vertex_slots();
     goal_cosine_ = cosine_of_degrees(angle_deg);
@@ -296,7 +276,7 @@ RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left_.empty(); rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices, reached);
-    if (verdict == RunGuard::Verdict::go_on) prune(slots, vertices);
+    if (verdict == RunGuard::Verdict::go_on && left_.empty()) verdict = thinning_.run(slots, vertices);
     return verdict;
 }
 

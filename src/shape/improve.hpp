@@ -3,7 +3,7 @@
 // first, its vertices move along their carriers; where that fails, the neighbourhood is smoothed towards the optimal Delaunay triangulation
 // [ChenXu04] and moves are tried again; then a vertex is taken out, or put in, where that makes everything better [LiTeng01, section 6].
 // What is left, mostly where the domain is one element thick, is split with the ordinary cascade, the smallest angles first, on a ladder of
-// angles: a rung that can't be reached leaves the mesh of the last one. In the end vertices that turn out to be superfluous go again.
+// angles: a rung that can't be reached leaves the mesh of the last one. In the end vertices that turn out to be superfluous go again (thin_out.hpp).
 //
 // A move is accepted only if every tetrahedron that it makes is better than the worst one that it destroys, so the moves end; smoothing
 // and splits are bounded in number.
@@ -20,6 +20,7 @@
 #include "refinement/refine.hpp"
 #include "shape/best_insertion.hpp"
 #include "shape/tet_judge.hpp"
+#include "shape/thin_out.hpp"
 #include "shape/vertex_mover.hpp"
 
 namespace wellmesh {
@@ -36,7 +37,8 @@ public:
           guard_(guard),
           judge_(mesh, refiner.sizes(), refiner.max_radius_edge()),
           mover_(mesh, boundary, judge_, seed),
-          insertion_(mesh, boundary, judge_, seed) {}
+          insertion_(mesh, boundary, judge_, seed),
+          thinning_(mesh, boundary, guard, judge_, mover_) {}
 
     /// Works until every dihedral angle of the domain is at least `angle_deg`, or nothing helps, or the guard says stop.
     RunGuard::Verdict improve(double angle_deg);
@@ -58,6 +60,11 @@ private:
         unsigned failures = 0;                      // since its neighbourhood changed last
         unsigned smoothings = 0, last_resorts = 0;  // in all
     };
+    /// Moves of a vertex that failed since its star changed last.
+    struct Tried {
+        std::uint64_t when = 0, pass = 0;
+        unsigned failures = 0;
+    };
     enum class LastResort : std::uint8_t { none, insert, remove_or_insert };
 
     RunGuard::Verdict settle(LastResort last_resort);
@@ -67,11 +74,9 @@ private:
     RunGuard::Verdict smooth_around_bad(unsigned rings);
     RunGuard::Verdict climb(double rung_cosine, std::size_t vertices_at_start, bool& reached);
     RunGuard::Verdict split_worse_than(double cosine);
-    void prune(std::size_t first_new_slot, std::size_t vertices_at_start);
     void collect_bad();
     void touch(const std::vector<TetId>& tets);
     void push(TetId t, double badness);
-    [[nodiscard]] TetId find_tet(const Corners& corners);
     [[nodiscard]] double worst_cosine() const;
 
     ConformingMesh& mesh_;
@@ -80,12 +85,14 @@ private:
     TetJudge judge_;
     VertexMover mover_;
     BestInsertion insertion_;
+    Thinning thinning_;
 
     double goal_cosine_ = 1;
     std::uint64_t clock_ = 0, pass_ = 0, splits_ = 0;
     std::vector<std::uint64_t> touched_;             // per vertex: when its star changed last
     std::vector<std::uint64_t> marked_;              // per vertex: stamp of the last collection that it belongs to
     std::unordered_map<std::uint64_t, Stuck> stuck_;  // by corners; looked up, never iterated
+    std::vector<Tried> tried_;                       // per vertex
     std::vector<Bad> heap_, left_;
     std::vector<VertexId> around_;
     std::vector<TetId> star_;

@@ -7,6 +7,7 @@
 #include "conforming/place_point.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
+#include "shape/star_judge.hpp"
 
 namespace wellmesh {
 namespace {
@@ -17,27 +18,6 @@ constexpr double kGain = 0.1;        // of the way to the goal, in cosine: less 
 constexpr std::size_t kTrials = 3;   // how many of the best candidates are tried in earnest where the boundary may still refuse them
 
 }  // namespace
-
-double judge_star(const ConformingMesh& mesh, const TetJudge& judge, const Cavity& cavity, const Placement& where, double limit) {
-    const TetStore& tets = mesh.tets();
-    double worst = 0;
-    for (const BoundaryFace& b : cavity.boundary) {
-        const TetId behind = b.inside.tet();
-        if (!mesh.in_domain(behind)) continue;
-        const auto c = tets.face_corners(b.inside);
-        if (c[0] == kInfiniteVertex || c[1] == kInfiniteVertex || c[2] == kInfiniteVertex) continue;
-        const Vec3 &p0 = mesh.point(c[0]), &p1 = mesh.point(c[1]), &p2 = mesh.point(c[2]);
-        const double cosine = judge.badness(p0, p1, p2, cavity.point, mesh.cell(behind));
-        if (cosine <= limit) {
-            worst = std::max(worst, cosine);
-            continue;
-        }
-        // A flat tetrahedron on a subface of the point's own carrier will belong to the other side.
-        if (where.carrier != CarrierKind::region && mesh.facet_at(b.inside).valid() && side_of_equatorial_sphere(p0, p1, p2, cavity.point) == Sign::positive) continue;
-        return kNoAngleCosine;
-    }
-    return worst;
-}
 
 Vec3 VertexMover::on_carrier(const Vec3& p) const {
     if (where_.carrier == CarrierKind::segment) return project_to_segment(mesh_.plc(), SegmentId{where_.carrier_id}, p);
@@ -104,20 +84,21 @@ void VertexMover::propose(TetId worst, unsigned samples) {
     offer(optimal_, reach);
     offer(middle_, reach);
     const auto scale = [&](unsigned k) { return ((k & 1U) ? 1.0 : kNearReach) * reach; };
+    PickingPoints points(where_.carrier == CarrierKind::region ? 3 : where_.carrier == CarrierKind::facet ? 2 : 1, key);
     if (where_.carrier == CarrierKind::region) {
         const auto f = mesh_.tets().face_corners(TetFace{worst, mesh_.tets().find_corner(worst, vertex_)});
         const Vec3 n = cross(mesh_.point(f[1]) - mesh_.point(f[0]), mesh_.point(f[2]) - mesh_.point(f[0]));
         for (const double step : {0.4, -0.4, 1.0, -1.0}) offer((step * reach / norm(n)) * n, reach);
-        for (unsigned k = 1; k <= samples; ++k) offer(scale(k) * picking_point(3, key, k), reach);
+        for (unsigned k = 1; k <= samples; ++k) offer(scale(k) * points.next(), reach);
     } else if (where_.carrier == CarrierKind::facet) {
         const ValidFacet& facet = mesh_.plc().facets[where_.carrier_id];
         for (unsigned k = 1; k <= samples; ++k) {
-            const Vec3 u = scale(k) * picking_point(2, key, k);
+            const Vec3 u = scale(k) * points.next();
             offer(u.x * facet.axis_u + u.y * facet.axis_v, reach);
         }
     } else {
         const Vec3 d = mesh_.point(where_.b) - mesh_.point(where_.a);
-        for (unsigned k = 1; k <= samples / 2; ++k) offer((reach * picking_point(1, key, k).x / norm(d)) * d, reach);
+        for (unsigned k = 1; k <= samples / 2; ++k) offer((reach * points.next().x / norm(d)) * d, reach);
     }
 }
 
@@ -133,6 +114,7 @@ bool VertexMover::take_out() {
 void VertexMover::judge_filling() {
     filling_cosine_.resize(filling_.size());
     for (std::size_t i = 0; i < filling_.size(); ++i) filling_cosine_[i] = judge_.counts(filling_[i]) ? judge_.badness(filling_[i]) : 0;
+    worst_filling_ = static_cast<std::size_t>(std::max_element(filling_cosine_.begin(), filling_cosine_.end()) - filling_cosine_.begin());
 }
 
 void VertexMover::put_back() {
@@ -140,23 +122,37 @@ void VertexMover::put_back() {
     mesh_.undo_removal(vertex_, where_, star_before_);
 }
 
+void VertexMover::note(bool removed) {
+    if (log_.is_open()) log_.note({vertex_, where_, home_, removed, star_before_, removed ? ConformingMesh::Snapshot{} : cavity_before_});
+}
+
 bool VertexMover::encroaches_nothing() {
     boundary_.find_encroached(cavity_, where_, encroached_segments_, encroached_faces_);
     return encroached_segments_.empty() && encroached_faces_.empty();
 }
 
+/// A tetrahedron that p would delete; an invalid id if p would leave something of the filling that is worse than `limit`.
+TetId VertexMover::conflicting_tet(const Vec3& p, double limit) {
+    const TetId worst = filling_[worst_filling_];
+    if (filling_cosine_[worst_filling_] > limit) return mesh_.triangulation().in_conflict(worst, p) ? worst : TetId{};
+    return mesh_.triangulation().locate(p, worst);
+}
+
 double VertexMover::try_point(const Vec3& p, double limit) {
     Triangulation& tri = mesh_.triangulation();
     ++statistics_.evaluations;
-    if (!tri.find_conflict_cavity(p, filling_[0], cavity_)) return kNoAngleCosine;
+    const TetId seed = conflicting_tet(p, limit);
+    if (!seed.valid()) return kNoAngleCosine;
+    // Where the cavity is in two cells the point encroaches what is between them: any tetrahedron of it tells the cell.
     const bool inside = where_.carrier == CarrierKind::region;
-    if (inside && mesh_.cell(cavity_.tets[0]).value() != where_.carrier_id) return kNoAngleCosine;
+    if (inside && mesh_.cell(seed).value() != where_.carrier_id) return kNoAngleCosine;
+    StarJudge star(mesh_, judge_, where_, p, limit);
+    if (!tri.grow_conflict_cavity(p, seed, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) return kNoAngleCosine;
     for (std::size_t i = 0; i < filling_.size(); ++i)
         if (filling_cosine_[i] > limit && !tri.in_last_cavity(filling_[i])) return kNoAngleCosine;
-    const double cosine = judge_star(mesh_, judge_, cavity_, where_, limit);
-    if (cosine > limit) return kNoAngleCosine;
+    if (!encroaches_nothing()) return kNoAngleCosine;
     if (!inside && (!mesh_.holds_carrier(cavity_, where_) || mesh_.would_break(cavity_, where_))) return kNoAngleCosine;
-    return encroaches_nothing() ? cosine : kNoAngleCosine;
+    return star.worst();
 }
 
 /// Is everything that changed at least as good as `limit`, and nothing labelled in it encroached?
@@ -178,7 +174,10 @@ bool VertexMover::put(const Vec3& p, double limit) {
     mesh_.reinsert(vertex_, cavity_, where_);
     changed_ = tri.new_tets();
     changed_.insert(changed_.end(), filling_.begin(), filling_.end());
-    if (fits(limit)) return true;
+    if (fits(limit)) {
+        note(false);
+        return true;
+    }
     ++statistics_.undone;
     mesh_.undo_insertion(vertex_, where_, cavity_before_);
     filling_.insert(filling_.end(), tri.new_tets().begin(), tri.new_tets().end());
@@ -200,13 +199,19 @@ bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
         if (cosine <= goal) break;                                    // good enough
         if (where_.carrier == CarrierKind::region) best = cosine;     // inside, nothing can spoil the best one later
     }
+    if (put_best(limit)) {
+        ++statistics_.moves;
+        return true;
+    }
+    put_back();
+    return false;
+}
+
+/// Puts the vertex at the best of the candidates that the boundary does not refuse.
+bool VertexMover::put_best(double limit) {
     std::stable_sort(ranked_.begin(), ranked_.end(), [](const Candidate& a, const Candidate& b) { return a.cosine < b.cosine; });
     for (std::size_t k = 0; k < std::min(kTrials, ranked_.size()); ++k)
-        if (put(ranked_[k].point, limit)) {
-            ++statistics_.moves;
-            return true;
-        }
-    put_back();
+        if (put(ranked_[k].point, limit)) return true;
     return false;
 }
 
@@ -233,6 +238,32 @@ bool VertexMover::remove(VertexId v, double limit) {
     changed_ = filling_;
     if (fits(limit)) {
         ++statistics_.removals;
+        note(true);
+        return true;
+    }
+    put_back();
+    return false;
+}
+
+bool VertexMover::drop(VertexId v) {
+    if (!look_at_star(v) || !take_out()) return false;
+    changed_ = filling_;
+    ++statistics_.removals;
+    note(true);
+    return true;
+}
+
+bool VertexMover::pull(VertexId v, const Vec3& target, double limit) {
+    if (!look_at_star(v)) return false;
+    const Vec3 whole = target - home_;
+    if (!take_out()) return false;
+    ranked_.clear();
+    for (const double part : {0.5, 0.35, 0.65, 0.2, 0.8}) {
+        const Vec3 p = on_carrier(home_ + part * whole);
+        if (const double cosine = try_point(p, limit); cosine <= limit) ranked_.push_back({p, cosine});
+    }
+    if (put_best(limit)) {
+        ++statistics_.moves;
         return true;
     }
     put_back();

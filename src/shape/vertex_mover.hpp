@@ -12,6 +12,7 @@
 
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
+#include "shape/change_log.hpp"
 #include "shape/tet_judge.hpp"
 
 namespace wellmesh {
@@ -33,6 +34,14 @@ public:
     /// Takes v out if what fills the hole is at least as good as `limit`, or better than the star was.
     bool remove(VertexId v, double limit);
 
+    /// Takes v out if the mesh conforms without it, whatever its shape and even if something is encroached then. For chains of changes, which
+    /// look at that in the end.
+    bool drop(VertexId v);
+    /// Moves v part of the way to `target`, to where its star is best, if nothing of it is worse than `limit`.
+    bool pull(VertexId v, const Vec3& target, double limit);
+    /// Where changes are noted while it is open.
+    [[nodiscard]] ChangeLog& log() { return log_; }
+
     /// Tetrahedra that the last success made; some ids may be dead.
     [[nodiscard]] const std::vector<TetId>& changed() const { return changed_; }
     [[nodiscard]] const MoveStatistics& statistics() const { return statistics_; }
@@ -47,6 +56,8 @@ private:
     bool take_out();
     void judge_filling();
     void put_back();
+    bool put_best(double limit);
+    void note(bool removed);
     bool put(const Vec3& p, double limit);
     void propose(TetId worst, unsigned samples);
     void offer(const Vec3& offset, double reach);
@@ -54,6 +65,7 @@ private:
     [[nodiscard]] Vec3 on_carrier(const Vec3& p) const;
     /// Cosine of the star that p would get, more than `limit` as soon as that is certain. Leaves p's cavity.
     [[nodiscard]] double try_point(const Vec3& p, double limit);
+    [[nodiscard]] TetId conflicting_tet(const Vec3& p, double limit);
     [[nodiscard]] bool encroaches_nothing();
     [[nodiscard]] bool fits(double limit) const;
 
@@ -61,6 +73,7 @@ private:
     BoundaryRefiner& boundary_;
     const TetJudge& judge_;
     std::uint64_t seed_, attempt_ = 0;
+    ChangeLog log_;
 
     // The vertex at hand.
     VertexId vertex_{};
@@ -75,13 +88,11 @@ private:
     std::vector<Candidate> ranked_;
     std::vector<TetId> filling_, changed_;
     std::vector<double> filling_cosine_;
+    std::size_t worst_filling_ = 0;
     std::vector<Subsegment> encroached_segments_;
     std::vector<Subface> encroached_faces_;
     MoveStatistics statistics_;
 };
-
-/// Cosine of the worst tetrahedron of the star that cavity.point would get at this placement, more than `limit` as soon as that is certain.
-[[nodiscard]] double judge_star(const ConformingMesh& mesh, const TetJudge& judge, const Cavity& cavity, const Placement& where, double limit);
 
 /// Steps smaller than this gain in cosine are no progress.
 inline constexpr double kWorthwhile = 1e-4;

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tetrahedra known by their corners: taking a vertex out for a trial and putting it back gives them new ids.
+#pragma once
+
+#include <algorithm>
+
+#include "conforming/conforming_mesh.hpp"
+
+namespace wellmesh {
+
+/// The domain tetrahedron with these corners, or an invalid id.
+inline TetId find_tet(ConformingMesh& mesh, const TetStore::Corners& corners) {
+    for (const VertexId v : corners)
+        if (!mesh.triangulation().is_inserted(v)) return {};
+    const TetFace face = mesh.triangulation().find_face(corners[0], corners[1], corners[2]);
+    if (!face.valid()) return {};
+    for (const TetFace side : {face, mesh.tets().across(face)})
+        if (mesh.tets().corner(side.tet(), side.face()) == corners[3] && mesh.in_domain(side.tet())) return side.tet();
+    return {};
+}
+
+/// Corners inside cells first, then on facets, then on segments, which have fewer ways to go; input vertices, which have none, last.
+inline TetStore::Corners freest_first(const ConformingMesh& mesh, TetStore::Corners corners) {
+    std::sort(corners.begin(), corners.end(), [&](VertexId a, VertexId b) {
+        const auto ka = static_cast<int>(mesh.info(a).carrier), kb = static_cast<int>(mesh.info(b).carrier);
+        return ka != kb ? ka > kb : a < b;
+    });
+    return corners;
+}
+
+}  // namespace wellmesh
