@@ -135,7 +135,9 @@ TEST(ShapeImprover, ThinPartsAreSplit) {
     for (Vec3& v : bar.vertices) v.x *= 12;
     for (const std::uint64_t rotation : {0U, 5U}) {
         Improved improved(transformed(bar, rotation, 0, 1), MeshOptions{});
+        const std::size_t vertices = improved.staged.mesh.vertex_count();
         ASSERT_EQ(improved.improver.improve(30), RunGuard::Verdict::go_on);
+        EXPECT_LE(improved.staged.mesh.vertex_count(), vertices * 13 / 10 + 4) << "splits cascade, thinning follows";
         EXPECT_GE(improved.min_dihedral(), 30 * (1 - 1e-9));
         EXPECT_EQ(improved.staged.problem(true), "");
         EXPECT_EQ(off_carrier(improved.staged, 4), "");

@@ -10,6 +10,7 @@
 #include "conforming/place_point.hpp"
 #include "carriers.hpp"
 #include "shape/best_insertion.hpp"
+#include "shape/thin_out.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
 
@@ -167,6 +168,60 @@ TEST_P(Moves, InsertionsAreBetterThanAskedOrLeaveEverythingAsItWas) {
     }
     EXPECT_EQ(m.staged.problem(true), "");
     EXPECT_GT(inserted[static_cast<std::size_t>(CarrierKind::region)], 0U);
+}
+
+TEST_P(Moves, ChainsAreUndoneExactly) {
+    const auto [domain, rotated] = GetParam();
+    Movable m(transformed(all_synthetic_plcs()[domain].plc, rotated ? 3 : 0, 0, 1), coarse());
+    ConformingMesh& mesh = m.staged.mesh;
+    const auto before = m.picture();
+    std::size_t longest = 0;
+    for (std::size_t first = 0; first < mesh.vertex_slots(); first += 17) {
+        m.mover.log().begin();
+        std::size_t steps = 0;
+        for (std::size_t i = first; i < std::min(first + 24, mesh.vertex_slots()); ++i) {
+            if (!mesh.triangulation().is_inserted(VertexId{i})) continue;
+            TetId worst{};
+            const double badness = m.star_badness(VertexId{i}, worst);
+            if (i % 3 == 0) steps += m.mover.drop(VertexId{i});
+            else if (i % 3 == 1) steps += m.mover.move(VertexId{i}, worst, std::min(m.judge.goal(), badness - 0.2), 10);
+            else steps += m.mover.pull(VertexId{i}, mesh.point(VertexId{i - 1}), std::cos(1 * std::numbers::pi / 180));
+        }
+        longest = std::max(longest, steps);
+        m.mover.log().undo(mesh);
+        ASSERT_EQ(m.picture(), before) << first;
+    }
+    EXPECT_GT(longest, 3U);
+    EXPECT_EQ(m.staged.problem(true), "");
+}
+
+TEST_P(Moves, ThinningTakesVerticesOutAndKeepsTheGoal) {
+    const auto [domain, rotated] = GetParam();
+    Movable m(transformed(all_synthetic_plcs()[domain].plc, rotated ? 3 : 0, 0, 1));
+    ConformingMesh& mesh = m.staged.mesh;
+    const auto volumes = m.staged.cell_volumes();
+    double worst = 0;
+    for (std::size_t i = 0; i < mesh.tets().slots(); ++i)
+        if (m.judge.counts(TetId{i})) worst = std::max(worst, m.judge.shape_badness(TetId{i}));
+    m.judge.set_goal(worst, TetJudge::kNoAspect);
+    const std::size_t count = mesh.vertex_count();
+    Thinning thinning(mesh, m.staged.boundary, m.staged.guard, m.judge, m.mover);
+    ASSERT_EQ(thinning.run(mesh.vertex_slots(), count), RunGuard::Verdict::go_on);
+    EXPECT_EQ(mesh.vertex_count(), count) << "none is new, and there are not too many";
+    const std::size_t enough = count - std::min<std::size_t>(count - mesh.plc().vertices.size(), 10) / 2;
+    ASSERT_EQ(thinning.run(mesh.vertex_slots(), enough), RunGuard::Verdict::go_on);
+    EXPECT_GE(mesh.vertex_count(), enough);
+    ASSERT_EQ(thinning.run(0, enough), RunGuard::Verdict::go_on);
+    if (count > mesh.plc().vertices.size() + 20) {
+        EXPECT_LT(mesh.vertex_count(), count - 5);
+    }
+    for (std::size_t i = 0; i < mesh.tets().slots(); ++i) {
+        if (!m.judge.counts(TetId{i})) continue;
+        EXPECT_LE(m.judge.badness(TetId{i}), worst);
+    }
+    EXPECT_EQ(m.staged.problem(true), "");
+    EXPECT_EQ(off_carrier(m.staged, 4), "");
+    for (const auto& [cell, volume] : volumes) EXPECT_NEAR(m.staged.cell_volumes().at(cell), volume, 1e-9 * volume);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Moves, ::testing::Combine(::testing::Range<std::size_t>(0, 5), ::testing::Bool()));
