@@ -47,15 +47,14 @@ void Refiner::guard_edges() {
         shortest = std::min(shortest, shortest_edge_squared(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3])));
     }
     shortest = std::sqrt(shortest);
-    reference_edge_.assign(sizes_.size(), shortest);
-    boundary_.reference_edge = shortest;
     for (std::size_t c = 0; c < sizes_.size(); ++c) {
         // A tetrahedron too large has at least the bound for circumradius, or that of the regular one of the bound's volume, R^3 = 27 V / (8 sqrt(3)).
         // Its point makes edges of (1 - delta) R; on what its centre encroaches, sqrt(1/2) less, twice (Lemma 2.5).
         const double radius = std::min(std::sqrt(sizes_[c].max_squared_circumradius), std::cbrt(27 / (8 * std::sqrt(3.0)) * sizes_[c].max_volume));
-        reference_edge_[c] = std::min(shortest, (1 - boundary_.rules.delta) / 2 * radius);
-        if (mesh_.is_filled(CellId{c})) boundary_.reference_edge = std::min(boundary_.reference_edge, reference_edge_[c]);
+        if (mesh_.is_filled(CellId{c})) shortest = std::min(shortest, (1 - boundary_.rules.delta) / 2 * radius);
     }
+    // One bound for all cells: the finest one's edges are on the boundaries of its neighbours, too, and grade from there.
+    boundary_.reference_edge = shortest;
 }
 
 /// No tetrahedron is flat here: where rounding blurs the circumsphere it is computed exactly.
@@ -229,8 +228,8 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
             if (!tri.find_conflict_cavity(centre, t, cavity_)) return false;
         }
     }
-    if (reason != InsertionReason::size && !reference_edge_.empty()) {
-        const double allowed = boundary_.shortest_allowed(reference_edge_[cell.index()]);
+    if (reason != InsertionReason::size) {
+        const double allowed = boundary_.shortest_allowed(boundary_.reference_edge);
         // The sphere is empty, so the first comparison settles nearly all.
         if ((1 - boundary_.rules.delta) * radius < allowed && distance_to_nearest(mesh_, cavity_) < allowed) {
             ++statistics_.guarded;

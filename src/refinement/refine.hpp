@@ -82,7 +82,6 @@ private:
     RunGuard& guard_;
     std::vector<CellSize> sizes_;
     double max_radius_edge_;
-    std::vector<double> reference_edge_;  // of Theorem 4.2, a cell; empty: no guard
     SliverRule sliver_rule_{};
     std::size_t original_vertices_ = 0;  // of the mesh that met its size first: slivers among them are the paper's original ones
     bool size_met_ = false;

@@ -90,6 +90,26 @@ TEST(GenerateOnce, RegionsKeepTheirVolumesAndBounds) {
     }
 }
 
+TEST(GenerateOnce, NeighboursOfFiftyfoldSizeGradeIntoEachOther) {
+    // The fine cell's boundary gives the coarse one edges far below its own bound: the guard against short edges must let it grade from there.
+    Plc plc = cube();
+    const Plc inner = transformed(cube(0.1), 0, 0, 1);
+    const auto first = static_cast<std::uint32_t>(plc.vertices.size());
+    for (const Vec3& v : inner.vertices) plc.vertices.push_back(v + Vec3{0.45, 0.45, 0.45});
+    for (PlcFacet facet : inner.facets) {
+        for (auto& polygon : facet.polygons)
+            for (auto& v : polygon) v += first;
+        plc.facets.push_back(facet);
+    }
+    plc.region_seeds = {{{0.5, 0.5, 0.5}, 1, 1.2e-7}, {{0.01, 0.02, 0.03}, 2, 1.5e-2}};
+    for (const auto seeding : {Seeding::automatic, Seeding::off}) {
+        MeshOptions options;
+        options.seeding = seeding;
+        const MeshResult result = generate(transformed(plc, 5, 0, 1), options);
+        expect_goals_met(result);
+    }
+}
+
 TEST(GenerateOnce, SliversAreIgnoredWhenAskedSo) {
     MeshOptions options;
     options.quality.min_dihedral_angle_deg = 0;
