@@ -102,15 +102,18 @@ void add_paper_flags(CLI::App& command, MeshOptions& options, const CLI::Option*
         ->type_name("practical|certified")->default_str("practical");
     command.add_option("--delta", options.paper.delta, fmt::format("radius of a picking region over the circumradius (default: {}; certified: {})", kPracticalDelta, kCertifiedDelta))
         ->type_name("DELTA");
-    command.add_option("--b", options.paper.b, fmt::format("certified: new slivers below b circumradii of what was split are avoided (default: {})", kCertifiedB))->type_name("B");
+    command.add_option("--b", options.paper.b, fmt::format("new slivers below b circumradii of what was split are avoided (certified: {}; refine: {}; improve: none)", kCertifiedB, kPracticalB))->type_name("B");
     const CLI::Option* rho = command.add_option("--rho0", options.quality.max_radius_edge_ratio,
                                                 fmt::format("the paper's name of --max-radius-edge (default in certified mode: {})", kCertifiedRadiusEdgeRatio))
         ->type_name("RATIO");
-    command.add_option("--sigma0", options.paper.sigma0, fmt::format("certified: slivers have volume / shortest edge^3 below this (default: {})", kCertifiedSigma))
+    command.add_option("--sigma0", options.paper.sigma0, fmt::format("slivers have volume / shortest edge^3 below this (certified: {}; refine, improve: the angle decides)", kCertifiedSigma))
         ->type_name("SIGMA");
+    command.add_option("--sigma0-boundary", options.paper.sigma0_boundary, "refine, improve: --sigma0 of tetrahedra that touch the boundary (default: the same)")->type_name("SIGMA");
     command.add_flag("--invariants", options.invariants, "report what the paper claims of the insertions, and what they did");
     command.parse_complete_callback([&options, ratio, angle, rho] {
-        if (options.slivers == SliverStrategy::none && angle->count() == 0) options.quality.min_dihedral_angle_deg = 0;
+        // Where slivers are left alone, or judged by sigma0, angles are no goal unless one is given.
+        const bool by_angle = options.slivers != SliverStrategy::none && !options.paper.sigma0;
+        if (!by_angle && angle->count() == 0) options.quality.min_dihedral_angle_deg = 0;
         if (options.mode != Mode::certified) return;
         const MeshOptions certified = certified_options();
         if (ratio->count() == 0 && rho->count() == 0) options.quality.max_radius_edge_ratio = certified.quality.max_radius_edge_ratio;
@@ -133,6 +136,9 @@ void add_mesh_flags(CLI::App& command, MeshOptions& options) {
         ->type_name("RATIO")->capture_default_str();
     const CLI::Option* angle = command.add_option("--min-dihedral", options.quality.min_dihedral_angle_deg, "least dihedral angle, in degrees; 0 ignores slivers")
         ->type_name("DEG")->capture_default_str();
+    command.add_option("--min-dihedral-boundary", options.quality.min_dihedral_boundary_deg,
+                       "--slivers refine, improve: --min-dihedral of tetrahedra that touch the boundary (default: the same)")
+        ->type_name("DEG");
     command.add_option_function<std::string>(
         "--slivers", [&options](const std::string& text) { options.slivers = read_strategy(text); },
         "how slivers are removed: none (they stay; --min-dihedral defaults to 0 then), a published way, or best (docs/strategies.md)")
@@ -168,8 +174,10 @@ void add_write_flags(CLI::App& command, WriteOptions& options) {
 void add_certify_flags(CLI::App& command, CertifyOptions& options) {
     command.add_option("--max-radius-edge", options.max_radius_edge_ratio, "refute if circumradius / shortest edge exceeds this")->type_name("RATIO");
     command.add_option("--min-dihedral", options.min_dihedral_angle_deg, "refute if a dihedral angle is below this, in degrees")->type_name("DEG");
+    command.add_option("--min-dihedral-boundary", options.min_dihedral_boundary_deg, "the same for tetrahedra that touch the boundary (default: the same)")->type_name("DEG");
     command.add_option("--max-aspect", options.max_aspect_ratio, "refute if circumradius / inradius exceeds this (3 is regular)")->type_name("RATIO");
     command.add_option("--min-sigma", options.min_sigma, "refute if volume / shortest edge^3 is below this")->type_name("SIGMA");
+    command.add_option("--min-sigma-boundary", options.min_sigma_boundary, "the same for tetrahedra that touch the boundary (default: the same)")->type_name("SIGMA");
     command.add_option("--max-volume", options.max_volume, "refute if the volume of a tetrahedron exceeds this")->type_name("V");
     command.add_option("--tolerance", options.tolerance, "how far a subface may leave the input, relative to the input's diagonal")
         ->type_name("REL")->capture_default_str();
@@ -204,6 +212,8 @@ void require_valid(const CertifyOptions& options) {
     constexpr double kLeast = std::numeric_limits<double>::denorm_min();
     need("--max-radius-edge", options.max_radius_edge_ratio, kLeast, kMost, "a positive number");
     need("--min-dihedral", options.min_dihedral_angle_deg, 0, 90, "between 0 and 90 degrees");
+    need("--min-dihedral-boundary", options.min_dihedral_boundary_deg, 0, 90, "between 0 and 90 degrees");
+    need("--min-sigma-boundary", options.min_sigma_boundary, 0, kMost, "a number not below 0");
     need("--max-aspect", options.max_aspect_ratio, kLeast, kMost, "a positive number");
     need("--min-sigma", options.min_sigma, 0, kMost, "a number not below 0");
     need("--max-volume", options.max_volume, kLeast, kMost, "a positive number");

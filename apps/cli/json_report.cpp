@@ -57,9 +57,11 @@ Json to_json(const MeshOptions& options) {
     json["delta"] = or_null(options.paper.delta);
     json["b"] = or_null(options.paper.b);
     json["sigma0"] = or_null(options.paper.sigma0);
+    json["sigma0_boundary"] = or_null(options.paper.sigma0_boundary);
     json["invariants"] = options.invariants;
     json["max_radius_edge_ratio"] = options.quality.max_radius_edge_ratio;
     json["min_dihedral_angle_deg"] = options.quality.min_dihedral_angle_deg;
+    json["min_dihedral_boundary_deg"] = or_null(options.quality.min_dihedral_boundary_deg);
     json["edge_length"] = or_null(options.size.edge_length);
     json["max_volume"] = or_null(options.size.max_volume);
     json["max_vertices"] = or_null(options.limits.max_vertices);
@@ -77,6 +79,8 @@ Json to_json(const CertifyOptions& options) {
     json["min_dihedral_angle_deg"] = or_null(options.min_dihedral_angle_deg);
     json["max_aspect_ratio"] = or_null(options.max_aspect_ratio);
     json["min_sigma"] = or_null(options.min_sigma);
+    json["min_dihedral_boundary_deg"] = or_null(options.min_dihedral_boundary_deg);
+    json["min_sigma_boundary"] = or_null(options.min_sigma_boundary);
     json["max_volume"] = or_null(options.max_volume);
     json["tolerance"] = options.tolerance;
     json["flat_angle_rad"] = options.flat_angle_rad;

@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "quality/shape_statistics.hpp"
 #include "quality/tet_shape.hpp"
@@ -20,9 +21,11 @@ struct Bound {
     bool upper;
     double TetShape::* value;
     const char* words;
+    double ShapeStatistics::* achieved;
+    enum class Where : std::uint8_t { everywhere, interior, boundary } where = Where::everywhere;
 
-    void look(const SuspectMesh& mesh, std::size_t tet, const TetShape& shape) {
-        if (!limit) return;
+    void look(const SuspectMesh& mesh, std::size_t tet, const TetShape& shape, bool touches_boundary) {
+        if (!limit || (where != Where::everywhere && touches_boundary != (where == Where::boundary))) return;
         claim.checked(1);
         const double have = shape.*value;
         if (upper ? have <= *limit : have >= *limit) return;
@@ -45,7 +48,7 @@ void measure(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& tri
         classes[t] = touches ? TetClass::boundary : TetClass::interior;
         all.add(shape);
         (touches ? boundary : interior).add(shape);
-        look(t, shape);
+        look(t, shape, touches);
     }
     certificate.all = all.result();
     certificate.interior = interior.result();
@@ -56,25 +59,37 @@ void measure(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& tri
 }  // namespace
 
 void measure_shapes(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, Certificate& certificate) {
-    measure(mesh, triangles, certificate, [](std::size_t, const TetShape&) {});
+    measure(mesh, triangles, certificate, [](std::size_t, const TetShape&, bool) {});
 }
 
 void append_shape_claims(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, Certificate& certificate) {
-    std::array<Bound, 5> bounds{{
-        {{"radius_edge", "Every tetrahedron's circumradius is at most the bound times its shortest edge."}, options.max_radius_edge_ratio, true, &TetShape::radius_edge, "radius-edge ratio"},
-        {{"dihedral", "Every dihedral angle is at least the bound."}, options.min_dihedral_angle_deg, false, &TetShape::min_dihedral_deg, "smallest dihedral angle [deg]"},
-        {{"aspect_ratio", "Every tetrahedron's circumradius is at most the bound times its inradius."}, options.max_aspect_ratio, true, &TetShape::aspect, "aspect ratio"},
-        {{"sigma", "Every tetrahedron's volume is at least the bound times the cube of its shortest edge."}, options.min_sigma, false, &TetShape::sigma, "sigma"},
-        {{"max_volume", "Every tetrahedron's volume is at most the bound."}, options.max_volume, true, &TetShape::volume, "volume"},
-    }};
-    measure(mesh, triangles, certificate, [&](std::size_t t, const TetShape& shape) {
-        for (Bound& b : bounds) b.look(mesh, t, shape);
+    using S = ShapeStatistics;
+    using Where = Bound::Where;
+    const Where angles = options.min_dihedral_boundary_deg ? Where::interior : Where::everywhere, sigmas = options.min_sigma_boundary ? Where::interior : Where::everywhere;
+    std::vector<Bound> bounds{
+        {{"radius_edge", "Every tetrahedron's circumradius is at most the bound times its shortest edge."}, options.max_radius_edge_ratio, true, &TetShape::radius_edge,
+         "radius-edge ratio", &S::max_radius_edge_ratio},
+        {{"dihedral", "Every dihedral angle is at least the bound."}, options.min_dihedral_angle_deg, false, &TetShape::min_dihedral_deg, "smallest dihedral angle [deg]",
+         &S::min_dihedral_angle_deg, angles},
+        {{"aspect_ratio", "Every tetrahedron's circumradius is at most the bound times its inradius."}, options.max_aspect_ratio, true, &TetShape::aspect, "aspect ratio",
+         &S::max_aspect_ratio},
+        {{"sigma", "Every tetrahedron's volume is at least the bound times the cube of its shortest edge."}, options.min_sigma, false, &TetShape::sigma, "sigma", &S::min_sigma,
+         sigmas},
+        {{"max_volume", "Every tetrahedron's volume is at most the bound."}, options.max_volume, true, &TetShape::volume, "volume", &S::max_volume},
+    };
+    if (options.min_dihedral_boundary_deg)
+        bounds.push_back({{"dihedral_boundary", "Every dihedral angle of a tetrahedron at the boundary is at least its own bound."}, options.min_dihedral_boundary_deg, false,
+                          &TetShape::min_dihedral_deg, "smallest dihedral angle [deg]", &S::min_dihedral_angle_deg, Where::boundary});
+    if (options.min_sigma_boundary)
+        bounds.push_back({{"sigma_boundary", "The volume of every tetrahedron at the boundary is at least its own bound times the cube of its shortest edge."},
+                          options.min_sigma_boundary, false, &TetShape::sigma, "sigma", &S::min_sigma, Where::boundary});
+    measure(mesh, triangles, certificate, [&](std::size_t t, const TetShape& shape, bool touches_boundary) {
+        for (Bound& b : bounds) b.look(mesh, t, shape, touches_boundary);
     });
-    const ShapeStatistics& s = certificate.all;
-    const std::array<double, 5> achieved{s.max_radius_edge_ratio, s.min_dihedral_angle_deg, s.max_aspect_ratio, s.min_sigma, s.max_volume};
-    for (std::size_t i = 0; i < bounds.size(); ++i) {
-        bounds[i].claim.note(fmt::format("{} {:.6g}", bounds[i].upper ? "largest" : "smallest", achieved[i]));
-        certificate.claims.push_back(bounds[i].limit ? bounds[i].claim.decided() : bounds[i].claim.undecided("no bound given"));
+    for (Bound& b : bounds) {
+        const ShapeStatistics& s = b.where == Where::everywhere ? certificate.all : b.where == Where::interior ? certificate.interior : certificate.boundary;
+        b.claim.note(fmt::format("{} {:.6g}", b.upper ? "largest" : "smallest", s.*(b.achieved)));
+        certificate.claims.push_back(b.limit ? b.claim.decided() : b.claim.undecided("no bound given"));
     }
 }
 

@@ -117,6 +117,24 @@ double distance_to_nearest(const ConformingMesh& mesh, const Cavity& cavity) {
     return std::sqrt(shortest);
 }
 
+const Subsegment& longest_of(const ConformingMesh& mesh, const std::vector<Subsegment>& segments) {
+    return *std::max_element(segments.begin(), segments.end(), [&](const Subsegment& x, const Subsegment& y) {
+        return squared_distance(mesh.point(x.a), mesh.point(x.b)) < squared_distance(mesh.point(y.a), mesh.point(y.b));
+    });
+}
+
+const Subface& holder_of_projection(const ConformingMesh& mesh, const std::vector<Subface>& faces, const Vec3& p, double& depth) {
+    const auto depth_in = [&](const Subface& s) {
+        const Vec3 &a = mesh.point(s.corners[0]), &b = mesh.point(s.corners[1]), &c = mesh.point(s.corners[2]);
+        const Vec3 n = cross(b - a, c - a);
+        const double area = squared_norm(n);
+        return std::min({dot(cross(b - p, c - p), n), dot(cross(c - p, a - p), n), dot(cross(a - p, b - p), n)}) / area;
+    };
+    const Subface& chosen = *std::max_element(faces.begin(), faces.end(), [&](const Subface& x, const Subface& y) { return depth_in(x) < depth_in(y); });
+    depth = depth_in(chosen);
+    return chosen;
+}
+
 /// @pre cavity_ is that of the point to be inserted, from the picking region of an element of this circumradius.
 bool BoundaryRefiner::refuses(const SplitRequest& request, double radius) {
     const bool for_quality = request.reason == InsertionReason::boundary_by_radius_edge || request.reason == InsertionReason::boundary_by_sliver;
@@ -155,14 +173,14 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const 
     const std::uint64_t key = mix64(seed_, mix64(std::min(s.a, s.b).value(), std::max(s.a, s.b).value()));
     const Placement where = Placement::on_segment(s);
     const Vec3 middle = 0.5 * (a + b);
+    const double radius = distance(a, b) / 2;
     Triangulation& tri = mesh_.triangulation();
     const double jitter = rules.jitter * (2 * unit_double(mix64(key, 0)) - 1);
     const auto found = [&](unsigned k) {
-        const double at = k == 0 ? jitter : rules.delta * picking_point(1, key, k).x;
+        const double at = k == 0 ? jitter : std::min(rules.delta, rules.reach / radius) * picking_point(1, key, k).x;
         const Vec3 p = project_to_segment(mesh_.plc(), s.segment, middle + (at / 2) * (b - a));
         return p != a && p != b && tri.find_conflict_cavity(p, tri.tet_of(s.a), cavity_);
     };
-    const double radius = distance(a, b) / 2;
     unsigned chosen = 0;
     bool sliver_free = !judge;
     if (judge)
@@ -199,7 +217,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
     Triangulation& tri = mesh_.triangulation();
     const auto found = [&](unsigned k) {
         const Vec3 unit = picking_point(2, key, k == 0 ? 1 : k);
-        const double r = (k == 0 ? rules.jitter : rules.delta) * radius;
+        const double r = k == 0 ? rules.jitter * radius : rules.region(radius);
         const Vec3 p = project_to_facet(facet, centre + (r * unit.x) * facet.axis_u + (r * unit.y) * facet.axis_v);
         return tri.find_conflict_cavity(p, face.tet(), cavity_);
     };

@@ -36,6 +36,10 @@ struct PickingRules {
     /// The paper to the letter: one encroached subsegment at a time, since the first split may encroach the next, and slivers avoided by
     /// every split.
     bool strict = false;
+    /// The region's radius is at most this, in input units.
+    double reach = std::numeric_limits<double>::infinity();
+    /// Radius of the picking region of an element with this circumradius.
+    [[nodiscard]] double region(double radius) const { return std::min(delta * radius, reach); }
 };
 
 class BoundaryRefiner {
@@ -125,6 +129,12 @@ void classify_cells(ConformingMesh& mesh);
 
 /// Distance from cavity.point to the nearest vertex, which is one of the cavity's: nearest neighbours are Delaunay neighbours.
 [[nodiscard]] double distance_to_nearest(const ConformingMesh& mesh, const Cavity& cavity);
+
+/// Which of several encroached elements to split: the longest subsegment.
+[[nodiscard]] const Subsegment& longest_of(const ConformingMesh& mesh, const std::vector<Subsegment>& segments);
+/// The subface that holds the projection of p [LiTeng01, 2.3]; failing that, the nearest one.
+/// @param depth  gets the least barycentric coordinate of the projection; below 0 it lies outside.
+[[nodiscard]] const Subface& holder_of_projection(const ConformingMesh& mesh, const std::vector<Subface>& faces, const Vec3& p, double& depth);
 
 /// A low-discrepancy sequence in the unit ball, disk (z = 0) or interval (y = z = 0), its own for each key. No trigonometry: the same on
 /// every platform.

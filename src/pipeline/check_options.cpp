@@ -24,15 +24,13 @@ void check_strategy(const MeshOptions& options, std::vector<std::string>& proble
         problems.push_back(fmt::format("slivers must be best or refine in certified mode, whose own way with slivers is that of the paper, not {}", name));
         return;
     }
-    switch (options.slivers) {
-        case SliverStrategy::none:
-        case SliverStrategy::best: return;
-        case SliverStrategy::refine:
-            if (options.mode == Mode::certified) return;
-            break;
-        default: break;
-    }
-    problems.push_back(fmt::format("slivers can not be {} yet in this version; none and best are there", name));
+    const auto& boundary = options.quality.min_dihedral_boundary_deg;
+    if (boundary && !(*boundary >= 0 && *boundary <= kLargestMinDihedralDeg))
+        problems.push_back(fmt::format("min dihedral angle at the boundary must be between 0 and 70.52 degrees (the regular tetrahedron's), not {}", *boundary));
+    if (boundary && (options.mode == Mode::certified || (options.slivers != SliverStrategy::refine && options.slivers != SliverStrategy::improve)))
+        problems.push_back(fmt::format("min dihedral angle at the boundary is for the slivers refine and improve in practical mode; {} has one goal for all", name));
+    if (options.slivers == SliverStrategy::chew && !options.size.edge_length) problems.push_back("slivers chew needs a size (edge length): its density is uniform, and the size is its unit");
+    if (options.slivers == SliverStrategy::exude) problems.push_back("slivers can not be exude yet in this version");
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -17,17 +16,12 @@
 #include "predicates/predicates.hpp"
 #include "refinement/lattice_seeding.hpp"
 #include "refinement/refine.hpp"
-#include "shape/improve.hpp"
+#include "strategies/sliver_strategies.hpp"
 #include "validation/valid_plc.hpp"
 #include "wellmesh/generate.hpp"
 
 namespace wellmesh {
 namespace {
-
-/// Refinement looks for points without slivers up to this angle, among so many: more cost more than the moves that they save. For larger
-/// angles most stars would have to be moved anyway, and picks only add vertices (docs/decisions/0010).
-constexpr double kPickingAngleDeg = 20;
-constexpr unsigned kPickingCandidates = 12;
 
 class Generator {
 public:
@@ -67,9 +61,11 @@ public:
         CertifyOptions bounds;
         bounds.max_radius_edge_ratio = options_.quality.max_radius_edge_ratio;
         if (options_.quality.min_dihedral_angle_deg > 0) bounds.min_dihedral_angle_deg = options_.quality.min_dihedral_angle_deg;
+        bounds.min_dihedral_boundary_deg = options_.quality.min_dihedral_boundary_deg;
         bounds.max_volume = options_.size.max_volume;
         bounds.stop = control_.stop;
-        if (options_.mode == Mode::certified) bounds.min_sigma = paper_constants(options_).sigma0;
+        if (const double sigma0 = paper_constants(options_).sigma0; sigma0 > 0) bounds.min_sigma = sigma0;
+        bounds.min_sigma_boundary = options_.paper.sigma0_boundary;
         const double extent = input_extent(plc_);
         // Beyond the defaults only by what the input's own rounding did: the facets' tolerance, and the bend that it makes in the mesh.
         bounds.tolerance = std::max(bounds.tolerance, 4 * valid.coplanar_tolerance / extent);
@@ -109,27 +105,28 @@ private:
         Refiner refiner(mesh, boundary, guard_, options_);
         refuse_hopeless(expected_vertices(valid, refiner.sizes()));
         refiner.guard_edges();
-        if (options_.mode == Mode::certified) set_sliver_rule(refiner, options_);
+        const bool certified = options_.mode == Mode::certified;
+        if (certified) set_sliver_rule(refiner, options_);
+        else prepare_refinement(refiner, boundary, options_);
         if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 300'000 + 4 * expected_vertices(valid, refiner.sizes()));
-        const bool best = options_.slivers == SliverStrategy::best;
-        if (const double theta = options_.quality.min_dihedral_angle_deg; best && theta > 0 && theta <= kPickingAngleDeg)
-            refiner.set_sliver_cosine(std::cos(theta * (std::numbers::pi / 180)), kPickingCandidates);
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
             // The published ways have no seeds: they begin with what Delaunay refinement makes.
-            if (best && options_.seeding == Seeding::automatic && options_.mode == Mode::practical) LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
+            if (options_.slivers == SliverStrategy::best && options_.seeding == Seeding::automatic && !certified)
+                LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
             verdict = refiner.refine();
-            finish_theory(recorder.get(), boundary, result_);
+            if (certified || !only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
             count();
         });
-        const double theta = options_.quality.min_dihedral_angle_deg;
-        if (verdict == RunGuard::Verdict::go_on && best && theta > 0)
+        if (verdict == RunGuard::Verdict::go_on && !certified && asks_for_shape(options_))
             timed(Stage::shape, [&] {
-                ShapeImprover improver(mesh, boundary, refiner, guard_, options_.seed);
-                verdict = improver.improve(theta);
-                result_.statistics.moved_vertices = improver.statistics().moves;
+                const SliverOutcome outcome = remove_slivers(mesh, boundary, refiner, guard_, options_);
+                verdict = outcome.verdict;
+                result_.statistics.moved_vertices = outcome.moved_vertices;
+                if (!outcome.note.empty()) result_.statistics.notes.push_back(outcome.note);
                 count();
             });
+        if (!certified && only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
         result_.mesh = extract_mesh(mesh);
         result_.statistics.guarded_insertions = refiner.refused();
         result_.termination = termination(verdict);
@@ -155,7 +152,8 @@ private:
     /// Delaunay, conforming and Gabriel hold or the run fails; shape and size are asked and achieved instead.
     void fail_if_refuted() const {
         for (const Claim& claim : result_.certificate.claims) {
-            const bool goal = claim.name == "radius_edge" || claim.name == "dihedral" || claim.name == "aspect_ratio" || claim.name == "sigma" || claim.name == "max_volume";
+            const bool goal = claim.name == "radius_edge" || claim.name == "dihedral" || claim.name == "aspect_ratio" || claim.name == "sigma" || claim.name == "max_volume" ||
+                              claim.name == "dihedral_boundary" || claim.name == "sigma_boundary";
             if (goal || claim.state != Claim::State::refuted) continue;
             std::vector<ElementRef> offenders;
             if (claim.witness) offenders.push_back(*claim.witness);

@@ -17,13 +17,18 @@ namespace {
 
 constexpr std::size_t kWorstListed = 8;
 
+/// As the certificate divides them: the boundary's tetrahedra have a vertex on a segment, a facet or in the input.
+enum class Part : std::uint8_t { all, interior, boundary };
+
 /// Counts the tetrahedra for which `excess(shape, region)` is positive and keeps the worst few.
 template <class F>
-void count_misses(const MeshResult& result, AskedAchieved& goal, F&& excess) {
+void count_misses(const MeshResult& result, AskedAchieved& goal, F&& excess, Part part = Part::all) {
     std::vector<std::pair<double, std::size_t>> missed;
     const TetMesh& mesh = result.mesh;
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
         const auto& c = mesh.tets[t];
+        const bool touches = std::any_of(c.begin(), c.end(), [&](std::uint32_t v) { return mesh.vertex_carriers[v].kind != CarrierKind::region; });
+        if (part != Part::all && touches != (part == Part::boundary)) continue;
         const double by = excess(shape_of(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]]), mesh.tet_regions[t]);
         if (by > 0) missed.push_back({by, t});
     }
@@ -36,6 +41,25 @@ void count_misses(const MeshResult& result, AskedAchieved& goal, F&& excess) {
         for (const std::uint32_t v : c) centre = centre + 0.25 * mesh.vertices[v];
         goal.worst.push_back({EntityKind::tetrahedron, missed[i].second + 1, centre});
     }
+}
+
+/// Least angle or sigma: one goal, or one for what lies inside and one for what touches the boundary.
+void report_slivers(MeshResult& result, const MeshOptions& options) {
+    const auto report = [&](const char* name, double inside, std::optional<double> at_boundary, double ShapeStatistics::*achieved, double TetShape::*value) {
+        const Certificate& c = result.certificate;
+        const auto add = [&](const std::string& goal, double asked, const ShapeStatistics& of, Part part) {
+            if (!(asked > 0)) return;
+            AskedAchieved entry{goal, asked, of.*achieved, of.tets == 0 || of.*achieved >= asked, 0, {}};
+            if (!entry.met) count_misses(result, entry, [&](const TetShape& s, std::int32_t) { return asked - s.*value; }, part);
+            result.goals.push_back(entry);
+        };
+        if (!at_boundary) return add(name, inside, c.all, Part::all);
+        add(fmt::format("{} inside", name), inside, c.interior, Part::interior);
+        add(fmt::format("{} at the boundary", name), *at_boundary, c.boundary, Part::boundary);
+    };
+    const QualityGoals& quality = options.quality;
+    report("min dihedral angle [deg]", quality.min_dihedral_angle_deg, quality.min_dihedral_boundary_deg, &ShapeStatistics::min_dihedral_angle_deg, &TetShape::min_dihedral_deg);
+    report("min sigma V/L^3", paper_constants(options).sigma0, options.paper.sigma0_boundary, &ShapeStatistics::min_sigma, &TetShape::sigma);
 }
 
 }  // namespace
@@ -54,18 +78,7 @@ void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc
     AskedAchieved radius_edge{"max radius-edge ratio", rho, all.max_radius_edge_ratio, all.max_radius_edge_ratio <= rho, 0, {}};
     if (!radius_edge.met) count_misses(result, radius_edge, [&](const TetShape& s, std::int32_t) { return s.radius_edge - rho; });
     result.goals.push_back(radius_edge);
-    const double theta = options.quality.min_dihedral_angle_deg;
-    if (theta > 0) {
-        AskedAchieved dihedral{"min dihedral angle [deg]", theta, all.min_dihedral_angle_deg, all.min_dihedral_angle_deg >= theta, 0, {}};
-        if (!dihedral.met) count_misses(result, dihedral, [&](const TetShape& s, std::int32_t) { return theta - s.min_dihedral_deg; });
-        result.goals.push_back(dihedral);
-    }
-    if (options.mode == Mode::certified) {
-        const double sigma0 = paper_constants(options).sigma0;
-        AskedAchieved sigma{"min sigma V/L^3", sigma0, all.min_sigma, all.min_sigma >= sigma0, 0, {}};
-        if (!sigma.met) count_misses(result, sigma, [&](const TetShape& s, std::int32_t) { return sigma0 - s.sigma; });
-        result.goals.push_back(sigma);
-    }
+    report_slivers(result, options);
     if (options.size.edge_length) {
         const double h = *options.size.edge_length;
         const double bound = kCircumradiusPerEdgeLength * h * (1 + 1e-9);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "strategies/sliver_strategies.hpp"
+
 namespace wellmesh {
 namespace {
 
@@ -25,8 +27,34 @@ TheoryConstants paper_constants(const MeshOptions& options) {
     const PaperConstants& paper = options.paper;
     const double rho0 = options.quality.max_radius_edge_ratio;
     if (options.mode == Mode::certified) return {paper.delta.value_or(kCertifiedDelta), paper.b.value_or(kCertifiedB), rho0, paper.sigma0.value_or(kCertifiedSigma)};
-    return {paper.delta.value_or(kPracticalDelta), std::numeric_limits<double>::infinity(), rho0, 0};
+    const double infinity = std::numeric_limits<double>::infinity(), delta = options.slivers == SliverStrategy::chew ? kChewDelta : paper.delta.value_or(kPracticalDelta);
+    return {delta, paper.b.value_or(options.slivers == SliverStrategy::refine ? kPracticalB : infinity), rho0, paper.sigma0.value_or(0)};
 }
+
+namespace {
+
+/// The constants of practical mode: who uses them, and their ranges.
+void check_practical_constants(const MeshOptions& options, std::vector<std::string>& problems) {
+    const PaperConstants& paper = options.paper;
+    const std::string name = to_string(options.slivers);
+    const bool papers_own = options.slivers == SliverStrategy::refine || options.slivers == SliverStrategy::improve;
+    // No bound above on sigma0: the regular tetrahedron's 0.1179 is not the most, tetrahedra of the body-centred cubic lattice have 0.128.
+    const auto constant = [&](const char* what, std::optional<double> value) {
+        if (!value) return;
+        if (!papers_own) problems.push_back(fmt::format("{} (here {}) belongs to certified mode and to the slivers refine and improve, not to {}", what, *value, name));
+        else if (!(*value > 0 && *value <= std::numeric_limits<double>::max())) problems.push_back(fmt::format("{} must be a finite number above 0, not {}", what, *value));
+    };
+    constant("b", paper.b);
+    constant("sigma0", paper.sigma0);
+    constant("sigma0 at the boundary", paper.sigma0_boundary);
+    if (paper.delta && options.slivers == SliverStrategy::chew) problems.push_back(fmt::format("delta (here {}) is not for the slivers chew: its points lie within half a unit", *paper.delta));
+    if (!papers_own) return;
+    if (paper.sigma0_boundary && !paper.sigma0) problems.push_back("sigma0 at the boundary needs sigma0, by which slivers inside are judged then");
+    if (paper.sigma0 && (options.quality.min_dihedral_angle_deg != 0 || options.quality.min_dihedral_boundary_deg))
+        problems.push_back("min dihedral angle must be 0 where slivers are judged by sigma0");
+}
+
+}  // namespace
 
 std::vector<std::string> check_paper_constants(const MeshOptions& options) {
     const TheoryConstants c = paper_constants(options);
@@ -35,11 +63,11 @@ std::vector<std::string> check_paper_constants(const MeshOptions& options) {
         for (const std::string& problem : check(c)) problems.push_back("certified mode: " + problem);
         if (options.quality.min_dihedral_angle_deg != 0)
             problems.push_back(fmt::format("min dihedral angle must be 0 in certified mode, which judges slivers by sigma0, not {}", options.quality.min_dihedral_angle_deg));
+        if (options.paper.sigma0_boundary) problems.push_back("sigma0 at the boundary is for the slivers refine and improve of practical mode: in certified mode sigma0 holds everywhere");
         return problems;
     }
     if (!(c.delta > 0 && c.delta < 1)) problems.push_back(fmt::format("delta must be above 0 and below 1, not {}", c.delta));
-    if (options.paper.b) problems.push_back(fmt::format("b (here {}) belongs to certified mode", *options.paper.b));
-    if (options.paper.sigma0) problems.push_back(fmt::format("sigma0 (here {}) belongs to certified mode", *options.paper.sigma0));
+    check_practical_constants(options, problems);
     return problems;
 }
 
@@ -57,7 +85,11 @@ std::unique_ptr<RunRecorder> prepare_theory(const ConformingMesh& mesh, Boundary
 
 void set_sliver_rule(Refiner& refiner, const MeshOptions& options) {
     const TheoryConstants c = paper_constants(options);
-    refiner.set_sliver_rule({c.sigma0, c.b, kCertifiedCandidates});
+    SliverRule rule;
+    rule.inside = rule.at_boundary = c.sigma0;
+    rule.b = c.b;
+    rule.candidates = kCertifiedCandidates;
+    refiner.set_sliver_rule(rule);
 }
 
 void finish_theory(RunRecorder* recorder, BoundaryRefiner& boundary, MeshResult& result) {

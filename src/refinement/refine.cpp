@@ -68,9 +68,16 @@ Refiner::Fault Refiner::classify_strictly(TetId t, double& squared_badness) cons
     if (squared_badness > size.max_squared_circumradius || sphere.six_volumes > 6 * size.max_volume) return Fault::size;
     squared_badness /= squared_edge;
     if (!(squared_badness <= max_radius_edge_ * max_radius_edge_)) return Fault::radius_edge;
-    const double limit = 6 * sliver_rule_.sigma * squared_edge * std::sqrt(squared_edge);
-    if (!(sphere.six_volumes < limit)) return Fault::none;
-    squared_badness = limit / sphere.six_volumes;
+    return sliver_fault(t, sphere.six_volumes, squared_edge, squared_badness);
+}
+
+Refiner::Fault Refiner::sliver_fault(TetId t, double six_volumes, double squared_edge, double& squared_badness) const {
+    if (!sliver_rule_ || !sliver_rule_->splits) return Fault::none;
+    const auto& k = mesh_.tets().corners(t);
+    const double excess =
+        sliver_rule_->excess(mesh_.point(k[0]), mesh_.point(k[1]), mesh_.point(k[2]), mesh_.point(k[3]), six_volumes, squared_edge, touches_boundary(mesh_, k));
+    if (!(excess > 0)) return Fault::none;
+    squared_badness = excess;
     return Fault::sliver;
 }
 
@@ -100,7 +107,7 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
     if (squared_radius > squared_size_slack_ * size.max_squared_circumradius || six_volume > 6 * size.max_volume) return Fault::size;
     squared_badness = squared_radius / squared_edge;
     if (squared_badness > max_radius_edge_ * max_radius_edge_) return Fault::radius_edge;
-    return Fault::none;
+    return sliver_fault(t, six_volume, squared_edge, squared_badness);
 }
 
 void Refiner::enqueue(const std::vector<TetId>& tets) {
@@ -141,26 +148,18 @@ bool Refiner::star_is_good(const Cavity& cavity, const Placement& where) const {
     return true;
 }
 
-bool Refiner::star_has_small_sliver(const Cavity& cavity, const Placement& where, double radius) const {
-    if (where.carrier != CarrierKind::region) mesh_.plan_insertion(cavity, where);
-    for (std::size_t i = 0; i < cavity.boundary.size(); ++i) {
-        const BoundaryFace& b = cavity.boundary[i];
-        const bool changes_sides = where.carrier != CarrierKind::region && mesh_.changes_sides(i);
-        if (!mesh_.in_domain((changes_sides ? b.outside : b.inside).tet())) continue;
-        const auto c = mesh_.tets().face_corners(b.inside);
-        if (c[0] == kInfiniteVertex || c[1] == kInfiniteVertex || c[2] == kInfiniteVertex) continue;
-        const Vec3 &p = mesh_.point(c[0]), &q = mesh_.point(c[1]), &r = mesh_.point(c[2]);
+bool Refiner::star_has_small_sliver(const Cavity& cavity, const Placement& where, double radius) {
+    const SliverRule& rule = *sliver_rule_;
+    return !visit_new_star(mesh_, cavity, where, [&](const Vec3& p, const Vec3& q, const Vec3& r, CellId, bool touches) {
         const double squared_edge = shortest_edge_squared(p, q, r, cavity.point);
-        const double limit = 6 * sliver_rule_.sigma * squared_edge * std::sqrt(squared_edge);
-        if (!(six_volumes(p, q, r, cavity.point) < limit)) continue;
+        if (!(rule.excess(p, q, r, cavity.point, six_volumes(p, q, r, cavity.point), squared_edge, touches) > 0)) return true;
         const Circumsphere sphere = careful_circumsphere(p, q, r, cavity.point);
-        if (sphere.radius < sliver_rule_.b * radius && sphere.radius * sphere.radius <= max_radius_edge_ * max_radius_edge_ * squared_edge) return true;
-    }
-    return false;
+        return !(sphere.radius < rule.smallness(radius) && sphere.radius * sphere.radius <= max_radius_edge_ * max_radius_edge_ * squared_edge);
+    });
 }
 
-bool Refiner::accepts(const Cavity& cavity, const Placement& where, double radius) const {
-    return strict() ? !star_has_small_sliver(cavity, where, radius) : star_is_good(cavity, where);
+bool Refiner::accepts(const Cavity& cavity, const Placement& where, double radius) {
+    return sliver_rule_ ? !star_has_small_sliver(cavity, where, radius) : star_is_good(cavity, where);
 }
 
 std::size_t Refiner::more_urgent(InsertionReason reason) const {
@@ -211,12 +210,13 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
     Triangulation& tri = mesh_.triangulation();
     const VertexId parent = responsible_vertex(t, reason);
     ++statistics_.candidates;
-    bool sliver_free = !judging_ || accepts(cavity_, where, radius);
+    const bool centre_first = !sliver_rule_ || sliver_rule_->centre_first;
+    bool sliver_free = !judging_ || (centre_first && accepts(cavity_, where, radius));
     if (!sliver_free) {
         const auto& c = mesh_.tets().corners(t);
         const std::uint64_t key = mix64(boundary_.seed(), mix64(mix64(c[0].value(), c[1].value()), mix64(c[2].value(), c[3].value())));
         for (unsigned k = 1; k < candidates_ && !sliver_free; ++k) {
-            const Vec3 p = flush_to_exact_range(centre + (boundary_.rules.delta * radius) * picking_point(3, key, k));
+            const Vec3 p = flush_to_exact_range(centre + boundary_.rules.region(radius) * picking_point(3, key, k));
             ++statistics_.candidates;
             if (!tri.find_conflict_cavity(p, t, cavity_) || mesh_.cell(cavity_.tets[0]) != cell) continue;
             if (!accepts(cavity_, where, radius)) continue;
@@ -304,8 +304,8 @@ void Refiner::process(TetId t, InsertionReason reason) {
     double radius = 0;
     const Vec3 centre = flush_to_exact_range(circumcentre(a, b, c, d, &radius));
     const CellSize& size = sizes_[mesh_.cell(t).index()];
-    judging_ = sliver_cosine_ < 1;
-    if (judging_ && reason == InsertionReason::size) {
+    judging_ = sliver_rule_ || sliver_cosine_ < 1;
+    if (!sliver_rule_ && judging_ && reason == InsertionReason::size) {
         // A volume bound v is met by a regular tetrahedron of circumradius 1.25 v^(1/3); refined ones have about as much.
         const double bound = std::min(std::sqrt(size.max_squared_circumradius), 1.25 * std::cbrt(size.max_volume));
         judging_ = radius < kJudgeWithin * bound;
@@ -329,21 +329,9 @@ void Refiner::process_centre(TetId t, InsertionReason reason, const Vec3& centre
             request.rejected = boundary_.recorder->on_pick(event);
         }
         if (!encroached_segments_.empty()) {
-            const Subsegment longest = *std::max_element(encroached_segments_.begin(), encroached_segments_.end(), [&](const Subsegment& x, const Subsegment& y) {
-                return squared_distance(mesh_.point(x.a), mesh_.point(x.b)) < squared_distance(mesh_.point(y.a), mesh_.point(y.b));
-            });
-            boundary_.split(longest, request);
+            boundary_.split(Subsegment{longest_of(mesh_, encroached_segments_)}, request);
         } else {
-            // The subface that holds the projection of the circumcentre; failing that, the nearest one.
-            const auto projection_depth = [&](const Subface& s) {
-                const Vec3 &a = mesh_.point(s.corners[0]), &b = mesh_.point(s.corners[1]), &c = mesh_.point(s.corners[2]);
-                const Vec3 n = cross(b - a, c - a);
-                const double area = squared_norm(n);
-                return std::min({dot(cross(b - centre, c - centre), n), dot(cross(c - centre, a - centre), n), dot(cross(a - centre, b - centre), n)}) / area;
-            };
-            const Subface chosen = *std::max_element(encroached_faces_.begin(), encroached_faces_.end(),
-                                                     [&](const Subface& x, const Subface& y) { return projection_depth(x) < projection_depth(y); });
-            request.projection_depth = projection_depth(chosen);
+            const Subface chosen = holder_of_projection(mesh_, encroached_faces_, centre, request.projection_depth);
             boundary_.split(chosen, request);
         }
     } else if (mesh_.cell(cavity_.tets[0]) == mesh_.cell(t)) {
@@ -359,11 +347,15 @@ RunGuard::Verdict Refiner::refine() {
 RunGuard::Verdict Refiner::drain() {
     while (true) {
         if (!boundary_.idle()) {
-            judging_ = strict();
+            judging_ = sliver_rule_.has_value();
             boundary_.step();
             continue;
         }
         report_milestones();
+        if (!by_sliver_.empty() && mesh_.vertex_count() >= sliver_budget_) {
+            sliver_budget_spent_ = true;
+            by_sliver_.clear();
+        }
         if (by_size_.empty() && by_radius_edge_.empty() && by_sliver_.empty()) return RunGuard::Verdict::go_on;
         const RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), by_size_.size() + by_radius_edge_.size() + by_sliver_.size());
         if (verdict != RunGuard::Verdict::go_on) {
@@ -397,7 +389,7 @@ RunGuard::Verdict Refiner::split(TetId t, InsertionReason reason) {
         if (!mesh_.tets().is_finite(t) || BadTetQueue::fingerprint(mesh_.tets().corners(t)) != print || !mesh_.in_domain(t)) break;
         if (classify(t, badness) == Fault::flat) split_flat(t);
         else process(t, reason);
-        judging_ = strict();
+        judging_ = sliver_rule_.has_value();
         while (!boundary_.idle()) boundary_.step();
     }
     const RunGuard::Verdict verdict = drain();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "core/run_guard.hpp"
 #include "refinement/bad_tet_queue.hpp"
 #include "refinement/sizing.hpp"
+#include "refinement/sliver_rule.hpp"
 #include "wellmesh/options.hpp"
 
 namespace wellmesh {
@@ -20,13 +22,6 @@ namespace wellmesh {
 struct RefineStatistics {
     std::uint64_t insertions = 0, candidates = 0, fallbacks = 0;
     std::uint64_t guarded = 0;  ///< points inside refused because of Theorem 4.2 (BoundaryRefiner counts its own)
-};
-
-/// The paper's slivers, instead of the dihedral angle: radius-edge ratio within its bound, but V / L^3 < sigma. A new one is small if its
-/// circumradius is below b times that of the element that was split [LiTeng01, 2.2 and 3.1].
-struct SliverRule {
-    double sigma = 0, b = 0;
-    unsigned candidates = 1;
 };
 
 class Refiner {
@@ -40,8 +35,11 @@ public:
     /// kSizeTolerance of their bound stay, as moves may have made them.
     RunGuard::Verdict split(TetId t, InsertionReason reason);
 
-    /// Takes slivers for bad elements, too: refine() then ends when there are none. To be set before anything is refined, with strict rules.
+    /// From now on every pick avoids new small slivers, and refine() splits slivers, too, if the rule says so, after all else.
     void set_sliver_rule(const SliverRule& rule);
+    /// From so many vertices on slivers are split no more; size and radius-edge ratio still are. Without: for as long as there are slivers.
+    void set_sliver_budget(std::uint64_t vertices) { sliver_budget_ = vertices; }
+    [[nodiscard]] bool sliver_budget_spent() const { return sliver_budget_spent_; }
 
     enum class Fault : std::uint8_t { none, size, radius_edge, flat, sliver };
     [[nodiscard]] Fault classify(TetId t, double& squared_badness) const;
@@ -69,8 +67,9 @@ private:
     [[nodiscard]] Fault classify_strictly(TetId t, double& squared_badness) const;
     [[nodiscard]] bool strict() const { return boundary_.rules.strict; }
     bool star_is_good(const Cavity& cavity, const Placement& where) const;
-    bool star_has_small_sliver(const Cavity& cavity, const Placement& where, double radius) const;
-    bool accepts(const Cavity& cavity, const Placement& where, double radius) const;
+    bool star_has_small_sliver(const Cavity& cavity, const Placement& where, double radius);
+    bool accepts(const Cavity& cavity, const Placement& where, double radius);
+    [[nodiscard]] Fault sliver_fault(TetId t, double six_volumes, double squared_edge, double& squared_badness) const;
     [[nodiscard]] PickEvent describe(TetId t, InsertionReason reason, const Vec3& centre, double radius) const;  ///< a rejected point, but for e_v
     void report_milestones();
     [[nodiscard]] std::size_t more_urgent(InsertionReason reason) const;
@@ -82,7 +81,9 @@ private:
     RunGuard& guard_;
     std::vector<CellSize> sizes_;
     double max_radius_edge_;
-    SliverRule sliver_rule_{};
+    std::optional<SliverRule> sliver_rule_{};
+    std::uint64_t sliver_budget_ = std::numeric_limits<std::uint64_t>::max();
+    bool sliver_budget_spent_ = false;
     std::size_t original_vertices_ = 0;  // of the mesh that met its size first: slivers among them are the paper's original ones
     bool size_met_ = false;
     bool outside_rules_ = false;         // the point to be inserted is no pick of the paper's

@@ -21,6 +21,7 @@ constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
 constexpr unsigned kTriesUntouched = 3;   // failures after which a tetrahedron rests until its neighbourhood changes
 constexpr unsigned kTriesInAll = 4;       // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 constexpr double kRungDeg = 5;
+constexpr double kFirstRungDeg = 30;      // of moves alone, which mostly reach it, and do so better straight away than from rung to rung
 /// From this angle on the aspect ratio is a goal too. The angle alone does not bound it: 30 degrees leave needles of R/r up to 11 at R/L = 2.
 constexpr double kAspectFromDeg = 30, kMaxAspect = 8;
 /// Smoothing may make angles this small, relative to the goal, on the way: moves mend them.
@@ -264,6 +265,23 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
     }
     reached = !below();
     if (!reached && last && last_worst <= worst_cosine()) mesh_ = std::move(*last);
+    return verdict;
+}
+
+RunGuard::Verdict ShapeImprover::perturb(double angle_deg) {
+    RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
+    mover_.follow_gradients(true);
+    // Then from below, as in [Tournois09]: where a rung can't be reached, no higher one is worth its time.
+    for (double rung = std::min(kFirstRungDeg, angle_deg);; rung = std::min(rung + kRungDeg, angle_deg)) {
+        goal_cosine_ = cosine_of_degrees(rung);
+        judge_.set_goal(goal_cosine_, TetJudge::kNoAspect);
+        stuck_.clear();
+        tried_.assign(tried_.size(), {});
+        collect_bad();
+        verdict = settle(LastResort::none);
+        if (verdict != RunGuard::Verdict::go_on || !left_.empty() || rung == angle_deg) break;
+    }
+    mover_.follow_gradients(false);
     return verdict;
 }
 

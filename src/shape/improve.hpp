@@ -42,6 +42,8 @@ public:
 
     /// Works until every dihedral angle of the domain is at least `angle_deg`, or nothing helps, or the guard says stop.
     RunGuard::Verdict improve(double angle_deg);
+    /// The same by moves alone: no vertex comes or goes [EdelsbrunnerEtAl00, Tournois09].
+    RunGuard::Verdict perturb(double angle_deg);
     [[nodiscard]] ImproveStatistics statistics() const;
     /// Tetrahedra of the domain below the angle now.
     [[nodiscard]] std::size_t count_bad(double angle_deg) const;

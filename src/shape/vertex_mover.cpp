@@ -76,6 +76,18 @@ void VertexMover::offer(const Vec3& offset, double reach) {
     proposals_.push_back(on_carrier(home_ + std::min(1.0, 1.5 * reach / far) * offset));
 }
 
+/// The circumcentre c lies on the axis of the face opposite the vertex a, at a height t above its plane, a at a height h; by |a - c|^2 = r^2 + t^2
+/// with the face's fixed circumradius r, dt/da = (a - c) / h, so the gradient of R^2 = r^2 + t^2 is 2 t (a - c) / h.
+void VertexMover::propose_gradients(TetId worst, double reach) {
+    const auto f = mesh_.tets().face_corners(TetFace{worst, mesh_.tets().find_corner(worst, vertex_)});
+    const Vec3 p = mesh_.point(f[0]) - home_, q = mesh_.point(f[1]) - home_, r = mesh_.point(f[2]) - home_;
+    const Vec3 normal = cross(q - p, r - p), centre = (1 / (2 * determinant(p, q, r))) * scaled_circumcentre(p, q, r);  // from home
+    const double t = dot(centre - p, normal), h = -dot(p, normal);
+    if (const double radius = norm(centre); std::isfinite(radius) && radius > 0)
+        for (const double step : {0.25, 0.5, 1.0}) offer((t * h > 0 ? -step : step) * (reach / radius) * centre, reach);
+    for (const double step : {0.25, -0.25, 0.5, -0.5}) offer((step * reach / norm(normal)) * normal, reach);
+}
+
 /// Places to try: the optimal-Delaunay point, the neighbours' middle, offsets against the worst tetrahedron's opposite face, then samples.
 void VertexMover::propose(TetId worst, unsigned samples) {
     proposals_.clear();
@@ -83,6 +95,7 @@ void VertexMover::propose(TetId worst, unsigned samples) {
     const std::uint64_t key = mix64(seed_, mix64(vertex_.value(), ++attempt_));
     offer(optimal_, reach);
     offer(middle_, reach);
+    if (follow_gradients_) propose_gradients(worst, reach);
     const auto scale = [&](unsigned k) { return ((k & 1U) ? 1.0 : kNearReach) * reach; };
     PickingPoints points(where_.carrier == CarrierKind::region ? 3 : where_.carrier == CarrierKind::facet ? 2 : 1, key);
     if (where_.carrier == CarrierKind::region) {

@@ -29,6 +29,9 @@ public:
     /// Moves v so that the worst tetrahedron of its star gets better, to the first place found that reaches `goal`, or the best.
     /// @param worst  a tetrahedron of the star that is to be mended. @return was it moved?
     bool move(VertexId v, TetId worst, double goal, unsigned samples);
+    /// Propose steps along the gradients of [Tournois09], too: the squared circumradius of the worst tetrahedron, so that its sphere comes to
+    /// swallow a neighbour and it is flipped away, and its volume, down as well as up.
+    void follow_gradients(bool on) { follow_gradients_ = on; }
     /// Moves v to its optimal-Delaunay point, or half the way, if nothing gets worse than `floor` or than the star is now.
     bool smooth(VertexId v, double floor);
     /// Takes v out if what fills the hole is at least as good as `limit`, or better than the star was.
@@ -60,6 +63,7 @@ private:
     void note(bool removed);
     bool put(const Vec3& p, double limit);
     void propose(TetId worst, unsigned samples);
+    void propose_gradients(TetId worst, double reach);
     void offer(const Vec3& offset, double reach);
     [[nodiscard]] bool find_placement();
     [[nodiscard]] Vec3 on_carrier(const Vec3& p) const;
@@ -74,6 +78,7 @@ private:
     const TetJudge& judge_;
     std::uint64_t seed_, attempt_ = 0;
     ChangeLog log_;
+    bool follow_gradients_ = false;
 
     // The vertex at hand.
     VertexId vertex_{};

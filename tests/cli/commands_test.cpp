@@ -88,6 +88,42 @@ TEST(mesh_command, certified_mode_shows_that_every_claim_held) {
     EXPECT_EQ(run_wellmesh({"check", scratch.file("out.mesh"), "--plc", cube, "--max-radius-edge", "20", "--min-sigma", "0.01"}).status, 0);
 }
 
+TEST(mesh_command, slivers_are_treated_as_asked_and_what_is_missed_is_said) {
+    const ScratchFolder scratch;
+    const std::string cube = scratch.write("cube.off", kCubeOff);
+    const auto mesh = [&](Names options) {
+        Names arguments = {"mesh", cube, "-o", scratch.file("out.mesh"), "--json", "-", "--size", "0.2"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const Outcome outcome = run_wellmesh(arguments);
+        return std::pair{outcome.status, json::parse(outcome.out)};
+    };
+    const auto goals = [](const json& report) {
+        Names names;
+        for (const json& goal : report["goals"]) names.push_back(goal["goal"]);
+        return names;
+    };
+    // No care for slivers is no goal for them; one that is given counts.
+    const auto [none_status, none] = mesh({"--slivers", "none"});
+    EXPECT_EQ(none_status, 0);
+    EXPECT_EQ(none["options"]["slivers"], "none");
+    EXPECT_EQ(none["options"]["min_dihedral_angle_deg"], 0);
+    EXPECT_EQ(mesh({"--slivers", "none", "--min-dihedral", "20"}).first, 1);
+    EXPECT_EQ(mesh({"--slivers", "refine"}).first, 0);
+    EXPECT_EQ(mesh({"--slivers", "perturb"}).first, 0);
+    const auto [sigma_status, sigma] = mesh({"--slivers", "refine", "--sigma0", "0.04"});
+    EXPECT_EQ(sigma_status, 0);
+    EXPECT_EQ(sigma["options"]["min_dihedral_angle_deg"], 0);
+    EXPECT_EQ(goals(sigma).at(1), "min sigma V/L^3");
+    const auto [hopeless_status, hopeless] = mesh({"--slivers", "refine", "--min-dihedral", "45"});
+    EXPECT_EQ(hopeless_status, 1);
+    EXPECT_EQ(hopeless["termination"], "goals_unmet");
+    EXPECT_NE(hopeless["statistics"]["notes"].dump().find("refine stopped at"), std::string::npos);
+    const auto [parts_status, parts] = mesh({"--slivers", "improve", "--min-dihedral", "12", "--min-dihedral-boundary", "8"});
+    EXPECT_EQ(parts_status, 0);
+    EXPECT_EQ(goals(parts).at(1), "min dihedral angle [deg] inside");
+    EXPECT_EQ(goals(parts).at(2), "min dihedral angle [deg] at the boundary");
+}
+
 TEST(mesh_command, practical_mode_counts_the_claims_on_request) {
     const ScratchFolder scratch;
     const std::string cube = scratch.write("cube.off", kCubeOff);

@@ -46,6 +46,7 @@ TEST(usage, defaults_in_help_are_those_of_the_structs) {
     EXPECT_TRUE(contains(mesh, fmt::format("--max-radius-edge RATIO={} ", options.quality.max_radius_edge_ratio))) << mesh;
     EXPECT_TRUE(contains(mesh, fmt::format("--min-dihedral DEG={} ", options.quality.min_dihedral_angle_deg))) << mesh;
     EXPECT_TRUE(contains(mesh, fmt::format("--seed N={} ", options.seed))) << mesh;
+    EXPECT_TRUE(contains(mesh, fmt::format("--slivers none|refine|improve|chew|exude|perturb|best={}\n", to_string(options.slivers)))) << mesh;
     EXPECT_TRUE(contains(mesh, fmt::format("--msh-version 41|22={} ", WriteOptions{}.msh_version))) << mesh;
     // Those that say "default: none" must have none.
     EXPECT_FALSE(options.size.edge_length || options.size.max_volume || options.limits.max_vertices || options.limits.time || options.coplanar_tolerance);
@@ -89,6 +90,7 @@ TEST(usage, values_out_of_range_are_refused_with_the_range) {
         {{"--time-limit", "0"}, "seconds"}, {{"--time-limit", "-1"}, "seconds"}, {{"--time-limit", "nan"}, "seconds"}, {{"--time-limit", "1e300"}, "seconds"},
         {{"--msh-version", "40"}, "41 or 22"},
         {{"--slivers", "exuded"}, "one of none refine improve chew exude perturb best, not 'exuded'"}, {{"--slivers", "exude"}, "not be exude yet"},
+        {{"--slivers", "chew"}, "needs a size"}, {{"--min-dihedral-boundary", "5"}, "refine and improve"}, {{"--sigma0-boundary", "0.01"}, "refine and improve"},
         {{"--mode", "proven"}, "practical or certified"}, {{"--delta", "1"}, "above 0 and below 1"}, {{"--delta", "nan"}, "above 0 and below 1"},
         {{"--b", "4.5"}, "belongs to certified mode"}, {{"--sigma0", "0.01"}, "belongs to certified mode"}, {{"--rho0", "inf"}, "0.6124"},
     };
@@ -100,7 +102,8 @@ TEST(usage, values_out_of_range_are_refused_with_the_range) {
         EXPECT_TRUE(contains(outcome.err, answer)) << option[0] << ' ' << option[1] << '\n' << outcome.err;
     }
     EXPECT_EQ(scratch.listing(), Names{"cube.off"});
-    for (const Names& option : {Names{"--tolerance", "-1"}, Names{"--flat-angle", "nan"}, Names{"--max-aspect", "0"}, Names{"--min-sigma", "-1"}})
+    for (const Names& option : {Names{"--tolerance", "-1"}, Names{"--flat-angle", "nan"}, Names{"--max-aspect", "0"}, Names{"--min-sigma", "-1"}, Names{"--min-dihedral-boundary", "91"},
+                                Names{"--min-sigma-boundary", "nan"}})
         EXPECT_EQ(run_wellmesh({"check", cube, option[0], option[1]}).status, 3) << option[0];
 }
 

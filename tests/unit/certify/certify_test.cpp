@@ -12,6 +12,8 @@
 #include "certify/space_claims.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
+#include "support/synthetic_plcs.hpp"
+#include "wellmesh/generate.hpp"
 
 namespace wellmesh {
 namespace {
@@ -94,6 +96,38 @@ TEST(Certify, BoundsAreChecked) {
         EXPECT_EQ(certificate.find(name)->checked, mesh.tets.size()) << name;
         EXPECT_EQ(certificate.find(name)->witness->kind, EntityKind::tetrahedron) << name;
     }
+}
+
+TEST(Certify, TheBoundaryMayHaveBoundsOfItsOwn) {
+    const Plc plc = wellmesh::testing::cube();
+    MeshOptions wanted;
+    wanted.slivers = SliverStrategy::none;
+    wanted.size.edge_length = 0.25;
+    const TetMesh mesh = generate(plc, wanted).mesh;
+    const Certificate plain = certify(mesh, {}, &plc);
+    ASSERT_GT(plain.interior.tets, 0U);
+    EXPECT_EQ(plain.find("dihedral_boundary"), nullptr);
+    EXPECT_EQ(plain.find("sigma_boundary"), nullptr);
+    // Each part is compared with its own bound: exactly reached it is proven, a little more is refuted, whatever the other part has.
+    const ShapeStatistics &inside = plain.interior, &boundary = plain.boundary;
+    for (const double by : {1.0, 1 + 1e-9})
+        for (const bool at_boundary : {false, true}) {
+            CertifyOptions options;
+            options.min_dihedral_angle_deg = inside.min_dihedral_angle_deg * (at_boundary ? 1 : by);
+            options.min_dihedral_boundary_deg = boundary.min_dihedral_angle_deg * (at_boundary ? by : 1);
+            options.min_sigma = inside.min_sigma * (at_boundary ? 1 : by);
+            options.min_sigma_boundary = boundary.min_sigma * (at_boundary ? by : 1);
+            const Certificate certificate = certify(mesh, options, &plc);
+            const auto expected = [&](bool own) { return own && by > 1 ? Claim::State::refuted : Claim::State::proven; };
+            for (const char* name : {"dihedral", "sigma"}) {
+                EXPECT_EQ(certificate.find(name)->state, expected(!at_boundary)) << name;
+                EXPECT_EQ(certificate.find(name)->checked, inside.tets) << name;
+                const Claim* own = certificate.find(std::string(name) + "_boundary");
+                ASSERT_NE(own, nullptr);
+                EXPECT_EQ(own->state, expected(at_boundary)) << name;
+                EXPECT_EQ(own->checked, boundary.tets) << name;
+            }
+        }
 }
 
 TEST(Certify, StatisticsOfThePartsAddUp) {

@@ -48,7 +48,11 @@ InvariantReport run(const Plc& plc, const std::function<void(Tamper&, StagedMesh
     if (meddle) meddle(tamper, staged);
     Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
     refiner.guard_edges();
-    refiner.set_sliver_rule({kConstants.sigma0, kConstants.b, 400});
+    SliverRule rule;
+    rule.inside = rule.at_boundary = kConstants.sigma0;
+    rule.b = kConstants.b;
+    rule.candidates = 400;
+    refiner.set_sliver_rule(rule);
     EXPECT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
     EXPECT_EQ(refiner.refused(), 0U);
     EXPECT_EQ(staged.problem(true), "");
