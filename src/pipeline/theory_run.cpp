@@ -27,8 +27,9 @@ TheoryConstants paper_constants(const MeshOptions& options) {
     const PaperConstants& paper = options.paper;
     const double rho0 = options.quality.max_radius_edge_ratio;
     if (options.mode == Mode::certified) return {paper.delta.value_or(kCertifiedDelta), paper.b.value_or(kCertifiedB), rho0, paper.sigma0.value_or(kCertifiedSigma)};
-    const double infinity = std::numeric_limits<double>::infinity(), delta = options.slivers == SliverStrategy::chew ? kChewDelta : paper.delta.value_or(kPracticalDelta);
-    return {delta, paper.b.value_or(options.slivers == SliverStrategy::refine ? kPracticalB : infinity), rho0, paper.sigma0.value_or(0)};
+    const double delta = options.slivers == SliverStrategy::chew ? kChewDelta : paper.delta.value_or(kPracticalDelta);
+    const double b = options.slivers == SliverStrategy::refine ? kPracticalB : std::numeric_limits<double>::infinity();
+    return {delta, paper.b.value_or(b), rho0, paper.sigma0.value_or(0)};
 }
 
 namespace {
@@ -41,13 +42,16 @@ void check_practical_constants(const MeshOptions& options, std::vector<std::stri
     // No bound above on sigma0: the regular tetrahedron's 0.1179 is not the most, tetrahedra of the body-centred cubic lattice have 0.128.
     const auto constant = [&](const char* what, std::optional<double> value) {
         if (!value) return;
-        if (!papers_own) problems.push_back(fmt::format("{} (here {}) belongs to certified mode and to the slivers refine and improve, not to {}", what, *value, name));
-        else if (!(*value > 0 && *value <= std::numeric_limits<double>::max())) problems.push_back(fmt::format("{} must be a finite number above 0, not {}", what, *value));
+        if (!papers_own)
+            problems.push_back(fmt::format("{} (here {}) belongs to certified mode and to the slivers refine and improve, not to {}", what, *value, name));
+        else if (!(*value > 0 && *value <= std::numeric_limits<double>::max()))
+            problems.push_back(fmt::format("{} must be a finite number above 0, not {}", what, *value));
     };
     constant("b", paper.b);
     constant("sigma0", paper.sigma0);
     constant("sigma0 at the boundary", paper.sigma0_boundary);
-    if (paper.delta && options.slivers == SliverStrategy::chew) problems.push_back(fmt::format("delta (here {}) is not for the slivers chew: its points lie within half a unit", *paper.delta));
+    if (paper.delta && options.slivers == SliverStrategy::chew)
+        problems.push_back(fmt::format("delta (here {}) is not for the slivers chew: its points lie within half a unit", *paper.delta));
     if (!papers_own) return;
     if (paper.sigma0_boundary && !paper.sigma0) problems.push_back("sigma0 at the boundary needs sigma0, by which slivers inside are judged then");
     if (paper.sigma0 && (options.quality.min_dihedral_angle_deg != 0 || options.quality.min_dihedral_boundary_deg))
@@ -63,7 +67,8 @@ std::vector<std::string> check_paper_constants(const MeshOptions& options) {
         for (const std::string& problem : check(c)) problems.push_back("certified mode: " + problem);
         if (options.quality.min_dihedral_angle_deg != 0)
             problems.push_back(fmt::format("min dihedral angle must be 0 in certified mode, which judges slivers by sigma0, not {}", options.quality.min_dihedral_angle_deg));
-        if (options.paper.sigma0_boundary) problems.push_back("sigma0 at the boundary is for the slivers refine and improve of practical mode: in certified mode sigma0 holds everywhere");
+        if (options.paper.sigma0_boundary)
+            problems.push_back("sigma0 at the boundary is for the slivers refine and improve of practical mode: in certified mode sigma0 holds everywhere");
         return problems;
     }
     if (!(c.delta > 0 && c.delta < 1)) problems.push_back(fmt::format("delta must be above 0 and below 1, not {}", c.delta));

@@ -48,7 +48,8 @@ bool LocalImprover::in_bounds(const Vec3& a, const Vec3& b, const Vec3& c, const
     if (!(six_volume > 0)) return false;
     squared_radius = squared_norm(scaled_circumcentre(u, v, w)) / (4 * six_volume * six_volume);
     const CellSize& size = sizes_[cell.index()];
-    return squared_radius <= squared_radius_edge_ * shortest_edge_squared(a, b, c, d) && squared_radius <= size.max_squared_circumradius && six_volume <= 6 * size.max_volume;
+    return squared_radius <= squared_radius_edge_ * shortest_edge_squared(a, b, c, d) && squared_radius <= size.max_squared_circumradius &&
+           six_volume <= 6 * size.max_volume;
 }
 
 void LocalImprover::push(TetId t) {
@@ -170,7 +171,8 @@ void LocalImprover::touch(const std::vector<TetId>& tets) {
 /// Finds the best try of a region. @return its number, or the number of tries if none is good.
 unsigned LocalImprover::best_try(TetId t, const Region& region, double limit) {
     // Good for either threshold.
-    const double enough = rule_.measure == SliverMeasure::dihedral ? std::min(rule_.inside, rule_.at_boundary) : 1 / (1 + std::max(rule_.inside, rule_.at_boundary));
+    const double enough = rule_.measure == SliverMeasure::dihedral ? std::min(rule_.inside, rule_.at_boundary)
+                                                                   : 1 / (1 + std::max(rule_.inside, rule_.at_boundary));
     unsigned chosen = region.tries;
     for (unsigned k = 0; k < region.tries; ++k) {
         if (!mesh_.triangulation().find_conflict_cavity(candidate(region, k), t, cavity_)) continue;

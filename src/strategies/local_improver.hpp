@@ -22,7 +22,8 @@ class LocalImprover {
 public:
     /// @param rule  tells slivers. New tetrahedra of at least b circumradii of the sliver may be worse than it, as the paper allows; with an
     ///              infinite b none may.
-    LocalImprover(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const std::vector<CellSize>& sizes, double max_radius_edge, const SliverRule& rule)
+    LocalImprover(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const std::vector<CellSize>& sizes, double max_radius_edge,
+                  const SliverRule& rule)
         : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(sizes), squared_radius_edge_(max_radius_edge * max_radius_edge), rule_(rule) {}
 
     /// Works until no sliver is left, or none can be improved, or the mesh has so many vertices, or the guard says stop.

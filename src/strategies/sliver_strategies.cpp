@@ -85,7 +85,8 @@ bool only_refines(SliverStrategy strategy) {
 
 void prepare_refinement(Refiner& refiner, BoundaryRefiner& boundary, const MeshOptions& options) {
     const double theta = options.quality.min_dihedral_angle_deg;
-    if (options.slivers == SliverStrategy::best && theta > 0 && theta <= kPickingAngleDeg) refiner.set_sliver_cosine(cosine_of_degrees(theta), kPickingCandidates);
+    if (options.slivers == SliverStrategy::best && theta > 0 && theta <= kPickingAngleDeg)
+        refiner.set_sliver_cosine(cosine_of_degrees(theta), kPickingCandidates);
     if (options.slivers != SliverStrategy::chew) return;
     SliverRule rule;
     if (!sliver_rule(options, rule)) return;
