@@ -10,7 +10,6 @@
 
 #include "core/vec3_math.hpp"
 #include "exudation/boundary_spheres.hpp"
-#include "exudation/star_growth.hpp"
 #include "exudation/weighted_mesh.hpp"
 #include "quality/tet_shape.hpp"
 
@@ -34,9 +33,9 @@ std::vector<double> largest_weights(const TetMesh& mesh) {
 
 class Exuder {
 public:
-    Exuder(TetMesh& mesh, double goal_deg, RunGuard& guard)
+    Exuder(TetMesh& mesh, double goal_deg, const ExudationBounds& bounds, RunGuard& guard)
         : goal_(std::cos(goal_deg * (std::numbers::pi / 180))), guard_(guard), reach_(largest_weights(mesh)), mesh_(mesh), boundary_(mesh_, mesh, reach_),
-          growth_(mesh_, boundary_, reach_), stamp_(mesh_.tets().slots(), 0) {}
+          growth_(mesh_, boundary_, reach_, bounds), stamp_(mesh_.tets().slots(), 0) {}
 
     ExudationReport run() {
         for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) offer(TetId{i});
@@ -118,8 +117,8 @@ private:
 
 }  // namespace
 
-ExudationReport exude(TetMesh& mesh, double goal_deg, RunGuard& guard) {
-    Exuder exuder(mesh, goal_deg, guard);
+ExudationReport exude(TetMesh& mesh, double goal_deg, const ExudationBounds& bounds, RunGuard& guard) {
+    Exuder exuder(mesh, goal_deg, bounds, guard);
     const ExudationReport report = exuder.run();
     exuder.write_to(mesh);
     return report;

@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "core/run_guard.hpp"
+#include "exudation/star_growth.hpp"
 #include "wellmesh/tet_mesh.hpp"
 
 namespace wellmesh {
@@ -26,10 +27,10 @@ struct ExudationReport {
 };
 
 /// @param mesh  Delaunay (or weighted Delaunay, with its weights), conforming and Gabriel as its certificate would prove it.
-/// @param goal_deg  tetrahedra with a smaller dihedral angle are slivers.
+/// @param goal_deg  tetrahedra with a smaller dihedral angle are slivers. @param bounds  that new tetrahedra keep.
 /// @post the same vertices, subfaces, subsegments and regions; weakly weighted Delaunay and weighted Gabriel: no vertex in conflict with a
 ///       sphere that it is not orthogonal to.
 /// Deterministic: slivers in order of their angles, ties by tetrahedron.
-ExudationReport exude(TetMesh& mesh, double goal_deg, RunGuard& guard);
+ExudationReport exude(TetMesh& mesh, double goal_deg, const ExudationBounds& bounds, RunGuard& guard);
 
 }  // namespace wellmesh

@@ -14,6 +14,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// In place of a cosine: worse than any angle, but a tetrahedron that may come and go while the star grows.
+constexpr double kOutOfBounds = 1.5;
+static_assert(1 < kOutOfBounds && kOutOfBounds < kNoAngleCosine);
+
 /// Intervals shorter than this part of the weight's whole range are ties: what lies between is not looked at.
 constexpr double kShortestInterval = 1e-6;
 
@@ -39,12 +43,24 @@ double StarGrowth::critical_weight(TetId t) const {
     return -at_zero / six_volumes(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]));
 }
 
-void StarGrowth::add_face(TetFace inside) {
+bool StarGrowth::is_within_bounds(TetFace link_face) const {
+    const auto c = mesh_.tets().face_corners(link_face);
+    const Vec3 &a = mesh_.point(c[0]), &b = mesh_.point(c[1]), &d = mesh_.point(c[2]), &p = mesh_.point(p_);
+    const double ratio_squared = radius_edge_squared(a, b, d, p);
+    if (!(ratio_squared <= bounds_.max_radius_edge_ratio * bounds_.max_radius_edge_ratio)) return false;
+    const auto size = bounds_.size_of_region.find(mesh_.region(link_face.tet()));
+    if (size == bounds_.size_of_region.end()) return true;
+    return ratio_squared * shortest_edge_squared(a, b, d, p) <= size->second.max_squared_circumradius && six_volumes(a, b, d, p) <= 6 * size->second.max_volume;
+}
+
+void StarGrowth::add_face(TetFace inside, bool original) {
     LinkFace f;
+    f.original = original;
     f.face = {inside, mesh_.tets().across(inside)};
     f.critical = mesh_.is_constrained(inside) ? kInfinity : critical_weight(f.face.outside.tet());
     const auto c = mesh_.tets().face_corners(inside);
     f.cosine = max_cos_dihedral(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(p_));
+    if (!original && f.cosine < kNoAngleCosine && !is_within_bounds(inside)) f.cosine = kOutOfBounds;
     link_.push_back(f);
 }
 
@@ -54,10 +70,7 @@ bool StarGrowth::start(VertexId p) {
     absorbed_.clear();
     destroyed_cosine_ = -1;
     if (!mesh_.find_star(p, star_)) return false;
-    for (const TetId t : star_) {
-        add_face(TetFace{t, mesh_.tets().find_corner(t, p)});
-        link_.back().original = true;
-    }
+    for (const TetId t : star_) add_face(TetFace{t, mesh_.tets().find_corner(t, p)}, true);
     return true;
 }
 
@@ -125,7 +138,7 @@ bool StarGrowth::absorb_next() {
     absorbed_.push_back(t);
     for (unsigned f = 0; f < 4; ++f)
         if (!inner[f]) {
-            add_face(TetFace{t, f});
+            add_face(TetFace{t, f}, false);
             if (link_.back().cosine >= kNoAngleCosine) return false;
         }
     return true;
@@ -134,7 +147,7 @@ bool StarGrowth::absorb_next() {
 WeightChoice StarGrowth::best_weight(VertexId p, TetId target, double target_cosine) {
     WeightChoice best;
     const double now = mesh_.weight(p), reach = reach_[p.index()];
-    if (!(reach > now) || !start(p)) return best;
+    if (!(reach > now) || !start(p) || !(next_critical() < reach)) return best;
     const double limit = std::min(reach, boundary_.limit(p));
     if (!(limit > now)) return best;
     best.cosine = target_cosine;

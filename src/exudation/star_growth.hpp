@@ -8,6 +8,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <map>
 #include <vector>
 
 #include "exudation/boundary_spheres.hpp"
@@ -15,10 +17,14 @@
 
 namespace wellmesh {
 
-/// Bounds that new tetrahedra keep, beside the angle. Infinite: none.
+/// Bounds that new tetrahedra keep, beside the angle.
 struct ExudationBounds {
-    double max_radius_edge_ratio = 0;
-    double max_squared_circumradius = 0, max_volume = 0;
+    double max_radius_edge_ratio = std::numeric_limits<double>::infinity();
+    struct Size {
+        double max_squared_circumradius = std::numeric_limits<double>::infinity();
+        double max_volume = std::numeric_limits<double>::infinity();
+    };
+    std::map<std::int32_t, Size> size_of_region{};  ///< regions that are not there have none
 };
 
 /// A weight and what it does to the mesh. `cosine` values are those of smallest dihedral angles: larger is worse.
@@ -32,8 +38,8 @@ struct WeightChoice {
 
 class StarGrowth {
 public:
-    /// @param bounds  of each region, by WeightedMesh::region through `bound_of`.
-    StarGrowth(WeightedMesh& mesh, const BoundarySpheres& boundary, const std::vector<double>& reach) : mesh_(mesh), boundary_(boundary), reach_(reach) {}
+    StarGrowth(WeightedMesh& mesh, const BoundarySpheres& boundary, const std::vector<double>& reach, const ExudationBounds& bounds)
+        : mesh_(mesh), boundary_(boundary), reach_(reach), bounds_(bounds) {}
 
     /// The best weight of p that makes `target` disappear and everything it makes better than the worst that it destroys. Not found: none is.
     [[nodiscard]] WeightChoice best_weight(VertexId p, TetId target, double target_cosine);
@@ -57,7 +63,8 @@ private:
     /// Absorbs the tetrahedron outside the link face of the least critical weight. @return false if that would break the mesh.
     bool absorb_next();
     bool may_absorb(TetId t, const std::vector<std::uint32_t>& faces) const;
-    void add_face(TetFace inside);
+    void add_face(TetFace inside, bool original);
+    [[nodiscard]] bool is_within_bounds(TetFace link_face) const;
     [[nodiscard]] double next_critical() const;
     [[nodiscard]] std::uint32_t next_face() const;
     [[nodiscard]] bool link_has(VertexId a, VertexId b) const;
@@ -68,6 +75,7 @@ private:
     WeightedMesh& mesh_;
     const BoundarySpheres& boundary_;
     const std::vector<double>& reach_;
+    const ExudationBounds& bounds_;
 
     VertexId p_{};
     std::vector<TetId> star_, absorbed_;

@@ -45,7 +45,7 @@ TEST(BallSearch, FindsEveryVertexInACircumball) {
             std::set<std::uint32_t> expected, visited;
             for (std::uint32_t q = 0; q < points.size(); ++q)
                 if (insphere(p[0], p[1], p[2], p[3], points[q]) == Sign::positive) expected.insert(q);
-            search.any_in(search.circumball(p[0], p[1], p[2], p[3]), [&](std::uint32_t q) {
+            search.any_in(search.circumball({p[0]}, {p[1]}, {p[2]}, {p[3]}), [&](std::uint32_t q) {
                 visited.insert(q);
                 return false;
             });
