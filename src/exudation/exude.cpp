@@ -35,7 +35,8 @@ class Exuder {
 public:
     Exuder(TetMesh& mesh, double goal_deg, const ExudationBounds& bounds, RunGuard& guard)
         : goal_(std::cos(goal_deg * (std::numbers::pi / 180))), guard_(guard), reach_(largest_weights(mesh)), mesh_(mesh), boundary_(mesh_, mesh, reach_),
-          growth_(mesh_, boundary_, reach_, bounds), stamp_(mesh_.tets().slots(), 0) {}
+          growth_(mesh_, boundary_, reach_, bounds), stamp_(mesh_.tets().slots(), 0),
+          changed_at_(mesh.vertices.size(), 0) {}
 
     ExudationReport run() {
         for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) offer(TetId{i});
@@ -45,11 +46,12 @@ public:
             const std::uint64_t before = report_.changes;
             work_off();
             progress = report_.changes != before;
+            std::vector<Sliver> waiting;
             for (const Sliver& s : stuck_)
-                if (is_current(s)) queue_.push(s);
-            stuck_.clear();
+                if (is_current(s)) (has_new_neighbours(s) ? queue_.push(s) : waiting.push_back(s));
+            stuck_ = std::move(waiting);
         }
-        report_.slivers_after = queue_.size();
+        for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) report_.slivers_after += mesh_.tets().is_live(TetId{i}) && growth_.cosine(TetId{i}) > goal_;
         for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) report_.weighted_vertices += mesh_.weight(VertexId{v}) != 0;
         return report_;
     }
@@ -60,6 +62,7 @@ private:
         double cosine = 0;
         TetId tet{};
         std::uint32_t stamp = 0;
+        std::uint64_t tried_at = 0;  ///< number of changes when nothing helped
         friend bool operator<(const Sliver& a, const Sliver& b) { return a.cosine != b.cosine ? a.cosine < b.cosine : a.tet > b.tet; }
     };
 
@@ -67,36 +70,50 @@ private:
 
     void offer(TetId t) {
         const double cosine = growth_.cosine(t);
-        if (cosine > goal_) queue_.push({cosine, t, stamp_[t.index()]});
+        if (cosine > goal_) queue_.push({cosine, t, stamp_[t.index()], 0});
     }
 
     void work_off() {
         while (!queue_.empty()) {
             report_.verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), queue_.size() + stuck_.size());
             if (report_.verdict != RunGuard::Verdict::go_on) return;
-            const Sliver s = queue_.top();
+            Sliver s = queue_.top();
             queue_.pop();
-            if (is_current(s) && !cure(s)) stuck_.push_back(s);
+            if (!is_current(s) || cure(s)) continue;
+            s.tried_at = report_.changes;
+            stuck_.push_back(s);
         }
     }
 
-    bool cure(const Sliver& s) {
+    /// Calls visit for the vertices whose weights may help: the corners and the apexes across unconstrained faces.
+    template <class Visit>
+    void for_helpers(TetId t, Visit&& visit) const {
         const TetStore& tets = mesh_.tets();
+        for (unsigned i = 0; i < 4; ++i) visit(tets.corner(t, i));
+        for (unsigned f = 0; f < 4; ++f) {
+            const TetFace other = tets.across(t, f);
+            if (other.valid() && !mesh_.is_constrained(other)) visit(tets.corner(other.tet(), other.face()));
+        }
+    }
+
+    bool has_new_neighbours(const Sliver& s) const {
+        bool found = false;
+        for_helpers(s.tet, [&](VertexId v) { found = found || changed_at_[v.index()] > s.tried_at; });
+        return found;
+    }
+
+    bool cure(const Sliver& s) {
         WeightChoice best;
-        const auto look = [&](VertexId p) {
+        for_helpers(s.tet, [&](VertexId p) {
             const WeightChoice choice = growth_.best_weight(p, s.tet, s.cosine);
             if (choice.found() && (!best.found() || choice.cosine < best.cosine)) best = choice;
-        };
-        for (unsigned i = 0; i < 4; ++i) look(tets.corner(s.tet, i));
-        for (unsigned f = 0; f < 4; ++f) {
-            const TetFace other = tets.across(s.tet, f);
-            if (other.valid() && !mesh_.is_constrained(other)) look(tets.corner(other.tet(), other.face()));
-        }
+        });
         if (!best.found() || !growth_.apply(best, created_)) return false;
         ++report_.changes;
         for (const TetId t : created_) {
             if (t.index() >= stamp_.size()) stamp_.resize(t.index() + 1, 0);
             ++stamp_[t.index()];
+            for (const VertexId v : mesh_.tets().corners(t)) changed_at_[v.index()] = report_.changes;
             offer(t);
         }
         return true;
@@ -109,6 +126,7 @@ private:
     BoundarySpheres boundary_;
     StarGrowth growth_;
     std::vector<std::uint32_t> stamp_;  // how often each slot was filled
+    std::vector<std::uint64_t> changed_at_;  // number of the last change of each vertex's star
     std::priority_queue<Sliver> queue_;
     std::vector<Sliver> stuck_;
     std::vector<TetId> created_;
