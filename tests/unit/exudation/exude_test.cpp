@@ -131,8 +131,8 @@ INSTANTIATE_TEST_SUITE_P(All, ExudeDomains, ::testing::Combine(::testing::Range<
 
 TEST(Exude, BringsTheAngleBeyondFiveDegreesAwayFromTheBoundary) {
     double worst_inside = 180;
-    for (const std::uint64_t seed : {1U, 2U, 3U}) {
-        TetMesh mesh = almost_good_mesh(transformed(cube(), seed, 0, 1), 0.08, seed);
+    for (const std::uint64_t seed : {1U, 2U}) {
+        TetMesh mesh = almost_good_mesh(transformed(cube(), seed, 0, 1), 0.1, seed);
         run(mesh, 20);
         Certificate certificate;
         measure_shape(mesh, certificate);
@@ -153,7 +153,7 @@ TEST(Exude, ContinuesFromWeights) {
 }
 
 TEST(Exude, StopsWhenAskedWithAMeshThatHolds) {
-    TetMesh mesh = almost_good_mesh(cube(), 0.15);
+    TetMesh mesh = almost_good_mesh(cube(), 0.25);
     std::stop_source source;
     source.request_stop();
     RunControl control;
