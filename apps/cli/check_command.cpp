@@ -57,7 +57,8 @@ void add_check_command(CLI::App& program, Command& selected) {
     auto arguments = std::make_shared<CheckCommand>();
     command.add_option("MESH", arguments->mesh, "tetrahedral mesh of any tool: .mesh (ASCII), .node/.ele")->required()->type_name("");
     command.add_option("--plc", arguments->plc, "the domain that the mesh claims to fill (default: claims about it are not checked)")->type_name("FILE");
-    command.add_option("--weights", arguments->weights, "the vertices' weights, .sol or .node: the mesh claims to be weighted Delaunay (default: Delaunay)")->type_name("FILE");
+    command.add_option("--weights", arguments->weights, "the vertices' weights, .sol or .node: the mesh claims to be weighted Delaunay (default: Delaunay)")
+        ->type_name("FILE");
     add_certify_flags(command, arguments->options);
     add_json_flag(command, arguments->json);
     command.add_flag("--quiet", arguments->quiet, "no report; the exit status says it: 0 no claim refuted, 1 otherwise");

@@ -102,7 +102,10 @@ Ball BallSearch::finish(const WeightedPoint& base, long double a, const std::arr
         ball.n_error[k] = static_cast<double>(64 * kLongUnit * n_scale) + 16 * kUnit * std::abs(ball.n[k]);
     }
     ball.radius_squared = static_cast<double>(dot(n, n) / (4 * a * a));
-    if (weights_ != nullptr) ball.allowance = static_cast<double>((a + a_error) * (1 + 16 * static_cast<Long>(kUnit)) * std::max(Long{0}, static_cast<Long>(largest_weight_) - static_cast<Long>(ball.base_weight)));
+    if (weights_ != nullptr) {
+        const Long largest_difference = std::max(Long{0}, static_cast<Long>(largest_weight_) - static_cast<Long>(ball.base_weight));
+        ball.allowance = static_cast<double>((a + a_error) * (1 + 16 * static_cast<Long>(kUnit)) * largest_difference);
+    }
     return ball;
 }
 

@@ -27,8 +27,8 @@ namespace {
 using namespace certifying;
 
 Claim claim_finite(const TetMesh& mesh) {
-    ClaimBuilder claim("finite_coordinates", mesh.weights.empty() ? "Every coordinate is finite and within the range in which predicates are exact."
-                                                                  : "Every coordinate and weight is finite and within the range in which predicates are exact.");
+    ClaimBuilder claim("finite_coordinates", fmt::format("Every coordinate{} is finite and within the range in which predicates are exact.",
+                                                         mesh.weights.empty() ? "" : " and weight"));
     claim.checked(mesh.vertices.size());
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
         if (!in_exact_range(flush_to_exact_range(mesh.vertices[v])))

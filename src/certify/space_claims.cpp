@@ -147,7 +147,7 @@ Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriang
 
 Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool proven_by_faces) {
     const bool weighted = mesh.is_weighted();
-    ClaimBuilder claim = weighted ? ClaimBuilder("weighted_delaunay", "No vertex is in conflict with the sphere orthogonal to a tetrahedron: its power is at least its weight.")
+    ClaimBuilder claim = weighted ? ClaimBuilder("weighted_delaunay", "No vertex is in conflict with the sphere orthogonal to a tetrahedron.")
                                   : ClaimBuilder("delaunay", "No vertex lies strictly inside the circumsphere of a tetrahedron.");
     std::uint64_t positive = 0;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) positive += mesh.positive(t);
@@ -175,10 +175,9 @@ Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool pro
 
 GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles) {
     const bool weighted = mesh.is_weighted();
-    ClaimBuilder claim = weighted ? ClaimBuilder("weighted_gabriel_subfaces",
-                                                 "No vertex is in conflict with the smallest sphere orthogonal to a constraint triangle (on the hull, between regions, or listed).")
-                                  : ClaimBuilder("gabriel_subfaces",
-                                                 "No vertex lies inside the equatorial sphere of a constraint triangle (on the hull, between regions, or listed).");
+    ClaimBuilder claim(weighted ? "weighted_gabriel_subfaces" : "gabriel_subfaces",
+                       fmt::format("No vertex {} sphere {} a constraint triangle (on the hull, between regions, or listed).",
+                                   weighted ? "is in conflict with the smallest" : "lies inside the equatorial", weighted ? "orthogonal to" : "of"));
     claim.checked(triangles.size());
     std::uint64_t touched_hull_faces = 0, touched = 0;
     for (const ConstraintTriangle& t : triangles) {
@@ -202,7 +201,8 @@ GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch
         if (encroached)
             claim.violated(EntityKind::triangle, t.listed == kNone ? 0 : number(t.listed), mesh.centroid(t.v.data(), 3), [&] {
                 return fmt::format("vertex {} at {} is {} sphere of {} {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
-                                   weighted ? "in conflict with the orthogonal" : "inside the equatorial", t.v[0] + 1, t.v[1] + 1, t.v[2] + 1, search.depth(ball, intruder));
+                                   weighted ? "in conflict with the orthogonal" : "inside the equatorial", t.v[0] + 1, t.v[1] + 1, t.v[2] + 1,
+                                   search.depth(ball, intruder));
             });
     }
     if (touched > 0) claim.note(fmt::format("{} more have a vertex inside by less than {:g} of the squared radius", touched, kGabrielMargin));
@@ -211,10 +211,9 @@ GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch
 
 Claim claim_gabriel_subsegments(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintSegment>& segments) {
     const bool weighted = mesh.is_weighted();
-    ClaimBuilder claim =
-        weighted ? ClaimBuilder("weighted_gabriel_subsegments",
-                                "No vertex is in conflict with the smallest sphere orthogonal to a constraint edge (where constraint triangles bend or meet, or listed).")
-                 : ClaimBuilder("gabriel_subsegments", "No vertex lies inside the diametral sphere of a constraint edge (where constraint triangles bend or meet, or listed).");
+    ClaimBuilder claim(weighted ? "weighted_gabriel_subsegments" : "gabriel_subsegments",
+                       fmt::format("No vertex {} sphere {} a constraint edge (where constraint triangles bend or meet, or listed).",
+                                   weighted ? "is in conflict with the smallest" : "lies inside the diametral", weighted ? "orthogonal to" : "of"));
     claim.checked(segments.size());
     std::uint64_t touched = 0;
     for (const ConstraintSegment& s : segments) {

@@ -46,7 +46,8 @@ namespace wellmesh::certifying {
 /// @param faces_in_order  the premises of (1) hold: otherwise a clean search proves nothing.
 [[nodiscard]] Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order);
 
-/// No vertex strictly inside the circumsphere of a positive tetrahedron (or in conflict with its orthogonal sphere, with weights); exact and global. Counts tetrahedra with at least one.
+/// No vertex strictly inside the circumsphere of a positive tetrahedron (or in conflict with its orthogonal sphere, with weights); exact
+/// and global. Counts tetrahedra with at least one.
 /// @param proven_by_faces  the premises of (2) hold.
 [[nodiscard]] Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool proven_by_faces);
 

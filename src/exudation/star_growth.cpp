@@ -39,7 +39,8 @@ double StarGrowth::cosine(TetId t) const {
 // PowerFormula is affine in the weight of e, with six volumes as the slope; it is positive in conflict.
 double StarGrowth::critical_weight(TetId t) const {
     const auto& c = mesh_.tets().corners(t);
-    const double at_zero = PredicateFilter::power_value(mesh_.weighted(c[0]), mesh_.weighted(c[1]), mesh_.weighted(c[2]), mesh_.weighted(c[3]), {mesh_.point(p_), 0});
+    const WeightedPoint p{mesh_.point(p_), 0};
+    const double at_zero = PredicateFilter::power_value(mesh_.weighted(c[0]), mesh_.weighted(c[1]), mesh_.weighted(c[2]), mesh_.weighted(c[3]), p);
     return -at_zero / six_volumes(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]));
 }
 

@@ -153,7 +153,8 @@ void WeightedMesh::connect_sides() {
     }
 }
 
-void WeightedMesh::replace_star(VertexId v, double weight, const std::vector<TetId>& deleted, const std::vector<BoundaryFace>& link, std::vector<TetId>& created) {
+void WeightedMesh::replace_star(VertexId v, double weight, const std::vector<TetId>& deleted, const std::vector<BoundaryFace>& link,
+                                 std::vector<TetId>& created) {
     struct Piece {
         std::array<VertexId, 3> face{};
         TetFace outside{};

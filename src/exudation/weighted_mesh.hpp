@@ -39,7 +39,8 @@ public:
 
     /// Gives v a weight and joins it to the faces `link` instead of to those of its star. The tetrahedra inside the faces are deleted.
     /// @param deleted  the star and what is absorbed. @param created  the new star.
-    void replace_star(VertexId v, double weight, const std::vector<TetId>& deleted, const std::vector<BoundaryFace>& link, std::vector<TetId>& created);
+    void replace_star(VertexId v, double weight, const std::vector<TetId>& deleted, const std::vector<BoundaryFace>& link,
+                      std::vector<TetId>& created);
 
     /// Puts tetrahedra and weights into `mesh`, the one that this was made from; weights stay empty if all are zero.
     void write_to(TetMesh& mesh) const;

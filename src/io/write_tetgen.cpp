@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen's .node (weights, if there are any, as the attribute), .ele (region as the attribute), .face and .edge (boundary markers), counted from 1. All four are always written, so
+// TetGen's .node (weights, if there are any, as the attribute), .ele (region as the attribute), .face and .edge (boundary markers), counted
+// from 1. All four are always written, so
 // that no file of an older mesh stays beside. The marker of a face is the input's marker of its facet; of an input without markers
 // (all zero), the facet's number. That of an edge is the segment's number.
 #include <algorithm>

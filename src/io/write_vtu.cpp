@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// VTK XML unstructured grid: tetrahedra with region and shape, points with their weights if there are any, appended as raw binary with 64-bit sizes, in the byte order of
+// VTK XML unstructured grid: tetrahedra with region and shape, points with their weights if there are any, appended as raw binary with 64-bit sizes,
+// in the byte order of
 // this machine (which the file states). VTK has no notion of conforming constraints, so subfaces and subsegments are left out.
 #include <array>
 #include <bit>

@@ -164,7 +164,8 @@ public:
     /// 9 eps^2 of it. 10 leaves room for third-order terms and for the rounding of P, both of the order of kRoundings eps.
     /// @pre forward_bound, find_tails
     [[nodiscard]] std::optional<Sign> double_double() const {
-        const double value = Formula::value(convert<DoubleDouble>([](double head, double tail) { return DoubleDouble{head, tail}; })).high;  // relative error eps, well within the bound's room
+        const auto differences = convert<DoubleDouble>([](double head, double tail) { return DoubleDouble{head, tail}; });
+        const double value = Formula::value(differences).high;  // relative error eps, well within the bound's room
         const double bound = 10 * Formula::kRoundings * kEpsilon * kEpsilon * permanent_;
         if (value > bound) return Sign::positive;
         if (value < -bound) return Sign::negative;

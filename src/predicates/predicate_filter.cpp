@@ -2,7 +2,8 @@
 // Bounds of the static filter.
 //
 // No rounded difference exceeds the box's extents (X, Y, Z), so the permanents (ladder.hpp) are at most 6 XYZ for orient3d and
-// 4 (X^2 + Y^2 + Z^2) 6 XYZ for insphere: four lifts, four 3 x 3 permanents; with weights in an interval of length W, each lift has W more. As in the ladder, the error is at most
+// 4 (X^2 + Y^2 + Z^2) 6 XYZ for insphere: four lifts, four 3 x 3 permanents; with weights in an interval of length W, each lift has W more.
+// As in the ladder, the error is at most
 // bound_of_roundings(kRoundings) times that; the few roundings of the bound itself are within its slack.
 // Unlike the ladder, nothing is scaled here, so underflow counts. orient3d is safe: products of three differences are
 // multiples of 2^-756. An insphere product may lose 2^-1075, times at most three more factors of 2^91 (a difference of weights counts for
@@ -37,7 +38,8 @@ Sign PredicateFilter::insphere_perturbed_beyond_filter(const Vec3& a, const Vec3
     return wellmesh::insphere_perturbed(a, b, c, d, e);
 }
 
-Sign PredicateFilter::power_test_beyond_filter(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d, const WeightedPoint& e) {
+Sign PredicateFilter::power_test_beyond_filter(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
+                                               const WeightedPoint& e) {
     return wellmesh::power_test(a, b, c, d, e);
 }
 

@@ -63,7 +63,8 @@ public:
             return Sign::negative;
         return insphere_perturbed_beyond_filter(a, b, c, d, e);
     }
-    [[nodiscard]] Sign power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d, const WeightedPoint& e) const {
+    [[nodiscard]] Sign power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
+                                  const WeightedPoint& e) const {
         const double value = power_value(a, b, c, d, e);
         if (value > power_bound_) return Sign::positive;
         if (value < -power_bound_) [[likely]]
@@ -84,14 +85,16 @@ public:
     /// The rounded determinants that the bounds are for.
     [[nodiscard]] static double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
     [[nodiscard]] static double insphere_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
-    [[nodiscard]] static double power_value(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d, const WeightedPoint& e);
+    [[nodiscard]] static double power_value(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
+                                            const WeightedPoint& e);
 
 private:
     static Sign orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
     static Sign insphere_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
     static Sign insphere_perturbed_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
 
-    static Sign power_test_beyond_filter(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d, const WeightedPoint& e);
+    static Sign power_test_beyond_filter(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
+                                         const WeightedPoint& e);
 
     double orient3d_bound_ = std::numeric_limits<double>::infinity();
     double insphere_bound_ = std::numeric_limits<double>::infinity();

@@ -16,7 +16,8 @@ TEST(BoundarySpheres, LimitIsWhereEncroachingBegins) {
     std::size_t limited = 0, on_boundary = 0;
     mesh.weights.assign(mesh.vertices.size(), 0);
     const auto encroached_by_weight_of = [&](std::size_t v) {
-        return count_encroached(mesh, [&](const auto& corners, std::size_t q) { return q == v || std::find(corners.begin(), corners.end(), v) != corners.end(); });
+        const auto concerns_v = [&](const auto& corners, std::size_t q) { return q == v || std::find(corners.begin(), corners.end(), v) != corners.end(); };
+        return count_encroached(mesh, concerns_v);
     };
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         const double limit = boundary.limit(VertexId{v});

@@ -33,7 +33,8 @@ struct OrthogonalSphere {
             half_lift[i] = (m[i][0] * m[i][0] + m[i][1] * m[i][1] + m[i][2] * m[i][2] - Long{p.weight} + Long{a.weight}) / 2;
         }
         const auto det = [](const auto& r) {
-            return r[0][0] * (r[1][1] * r[2][2] - r[1][2] * r[2][1]) - r[0][1] * (r[1][0] * r[2][2] - r[1][2] * r[2][0]) + r[0][2] * (r[1][0] * r[2][1] - r[1][1] * r[2][0]);
+            return r[0][0] * (r[1][1] * r[2][2] - r[1][2] * r[2][1]) - r[0][1] * (r[1][0] * r[2][2] - r[1][2] * r[2][0]) +
+                   r[0][2] * (r[1][0] * r[2][1] - r[1][1] * r[2][0]);
         };
         for (std::size_t k = 0; k < 3; ++k) {
             auto column = m;
@@ -57,12 +58,14 @@ inline std::size_t count_conflicts(const TetMesh& mesh) {
         for (std::size_t q = 0; q < mesh.vertices.size() && !found; ++q) {
             if (std::find(tet.begin(), tet.end(), q) != tet.end()) continue;
             const WeightedPoint p = weighted(mesh, q);
-            const Long x = Long{p.point.x} - Long{a.x} - sphere.centre[0], y = Long{p.point.y} - Long{a.y} - sphere.centre[1], z = Long{p.point.z} - Long{a.z} - sphere.centre[2];
+            const Long x = Long{p.point.x} - Long{a.x} - sphere.centre[0], y = Long{p.point.y} - Long{a.y} - sphere.centre[1];
+            const Long z = Long{p.point.z} - Long{a.z} - sphere.centre[2];
             const Long distance = x * x + y * y + z * z, spare = distance - sphere.radius_squared - Long{p.weight};
             if (std::abs(spare) > 1e-6L * (distance + sphere.scale + std::abs(Long{p.weight})))
                 found = spare < 0;
             else
-                found = oracle::power_test({weighted(mesh, tet[0]), weighted(mesh, tet[1]), weighted(mesh, tet[2]), weighted(mesh, tet[3]), p}) == Sign::positive;
+                found = oracle::power_test({weighted(mesh, tet[0]), weighted(mesh, tet[1]), weighted(mesh, tet[2]), weighted(mesh, tet[3]), p}) ==
+                        Sign::positive;
         }
         count += found;
     }

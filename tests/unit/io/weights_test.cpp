@@ -83,7 +83,8 @@ TEST(Weights, WhatIsWrongWithAFileIsSaidByLine) {
     const auto expect = [](const char* text, std::initializer_list<std::string_view> words) {
         expect_error(ErrorCode::bad_input, words, [&] { (void)io::read_medit_weights(source_of(text, "w.sol")); });
     };
-    EXPECT_EQ(io::read_medit_weights(source_of("MeshVersionFormatted 2\n\nDimension\n3\n# ours\nSolAtVertices\n2\n1 1\n0.5\n-1e-3\n")), (std::vector{0.5, -1e-3}));
+    const char* const sparse = "MeshVersionFormatted 2\n\nDimension\n3\n# ours\nSolAtVertices\n2\n1 1\n0.5\n-1e-3\n";
+    EXPECT_EQ(io::read_medit_weights(source_of(sparse)), (std::vector{0.5, -1e-3}));
     EXPECT_EQ(io::read_medit_weights(source_of("MeshVersionFormatted 1 Dimension 3 SolAtVertices 1 1 1 7 End")), std::vector{7.0});
     expect("", {"w.sol:1", "'MeshVersionFormatted'"});
     expect("MeshVersionFormatted 9", {"w.sol:1", "version 9"});

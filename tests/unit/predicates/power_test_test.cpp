@@ -28,13 +28,14 @@ Weighted weigh(const Quintuple& q, std::uint64_t number) {
     for (std::size_t i = 0; i < 5; ++i) {
         double w = 0;
         const Vec3& p = q[i];
+        const double lift = p.x * p.x + p.y * p.y + p.z * p.z;
         switch (kind) {
             case 0: break;
             case 1: w = scale / 4; break;
             case 2: w = scale * r.unit(); break;
             case 3: w = std::ldexp(static_cast<double>(r.integer(-4, 4)), -2) * (scale > 1e-100 ? 1 : 0); break;
-            case 4: w = r.bits() % 3 == 0 ? p.x * p.x + p.y * p.y + p.z * p.z : r.bits() % 2 == 0 ? some_ulps_off(r, p.x * p.x + p.y * p.y + p.z * p.z) : 0; break;
-            default: w = p.x * p.x + p.y * p.y + p.z * p.z - scale; break;
+            case 4: w = r.bits() % 3 == 0 ? lift : r.bits() % 2 == 0 ? some_ulps_off(r, lift) : 0; break;
+            default: w = lift - scale; break;
         }
         result[i] = {p, weight_in_exact_range(w) ? w : 0};
     }
