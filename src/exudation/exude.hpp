@@ -3,7 +3,7 @@
 //
 // No vertex moves, comes or goes, and the boundary stays. Worst sliver first, a weight of one of its vertices or of a vertex across one of
 // its faces is raised to where the sliver is gone and all that is made is better than the worst that is destroyed. So the sorted angles of
-// the mesh rise with every change, and the work ends. Differences to the paper: section 5 gives each vertex one weight, in any order, the
+// the mesh rise with every change, and the work ends. Differences to the paper: it gives each vertex one weight, in any order, the
 // one that is best for its star; here only slivers are looked at, vertices are visited as often as that helps, but weights never fall.
 #pragma once
 
@@ -16,7 +16,7 @@
 namespace wellmesh {
 
 /// Weights are at most the square of this part of the distance to the nearest vertex. Below a half no vertex is hidden by another one
-/// [Cheng00, section 3]; the paper's omega_0.
+/// [Cheng00]; the paper's omega_0.
 inline constexpr double kMaxWeightRatio = 0.45;
 
 struct ExudationReport {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the star of a vertex changes as its weight grows [Cheng00, section 5].
+// How the star of a vertex changes as its weight grows [Cheng00].
 //
 // The star of p with weight w is made of the tetrahedra of its present star and of all those in conflict with it: those whose
 // orthogonal sphere p has a power of less than w to, the *critical weight* of the tetrahedron. So they are absorbed one at a time, in
