@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(All, ExudeDomains, ::testing::Combine(::testing::Range<
 /// Cavities, handles, edges and vertices that touch, up to three regions; turned in half of the cases.
 TEST(Exude, RandomPolycubesKeepBoundaryAndRegions) {
     std::uint64_t changes = 0, on_boundary = 0;
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
         SCOPED_TRACE(seed);
         const RandomPolycube domain = random_polycube(seed);
         const Plc plc = seed % 2 == 0 ? domain.plc : transformed(domain.plc, seed, 0, 1);
@@ -153,7 +153,7 @@ TEST(Exude, RandomPolycubesKeepBoundaryAndRegions) {
         for (const auto& f : mesh.subfaces)
             for (const std::uint32_t v : f) on_boundary += !mesh.weights.empty() && mesh.weights[v] > 0;
     }
-    EXPECT_GT(changes, 50U);
+    EXPECT_GT(changes, 30U);
     EXPECT_GT(on_boundary, 0U);
 }
 
