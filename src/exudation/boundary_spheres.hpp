@@ -22,8 +22,6 @@ public:
     BoundarySpheres(const BoundarySpheres&) = delete;
     BoundarySpheres& operator=(const BoundarySpheres&) = delete;
 
-    [[nodiscard]] bool is_on_boundary(VertexId v) const { return first_[v.index()] != first_[v.index() + 1]; }
-
     /// The largest weight of p, up to its reach and up to rounding, for which the boundary stays. Less than its present one if it has none to spare.
     [[nodiscard]] double limit(VertexId p) const;
 
