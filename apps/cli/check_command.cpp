@@ -18,15 +18,16 @@ namespace wellmesh::cli {
 namespace {
 
 struct CheckCommand {
-    std::string mesh, plc, json;
+    std::string mesh, plc, weights, json;
     bool quiet = false;
     CertifyOptions options;
 };
 
 int run(const CheckCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.options);
-    require_report(arguments.json, {arguments.mesh, arguments.plc});
-    const TetMesh mesh = read_mesh(arguments.mesh);
+    require_report(arguments.json, {arguments.mesh, arguments.plc, arguments.weights});
+    TetMesh mesh = read_mesh(arguments.mesh);
+    if (!arguments.weights.empty()) mesh.weights = read_weights(arguments.weights, mesh.vertices.size());
     std::optional<Plc> plc;
     if (!arguments.plc.empty()) plc = read_plc(arguments.plc);
     const Certificate certificate = certify(mesh, arguments.options, plc ? &*plc : nullptr);
@@ -35,6 +36,7 @@ int run(const CheckCommand& arguments, Interrupt& interrupt) {
     if (!arguments.json.empty()) {
         Json json = json_header("check", arguments.mesh);
         json["plc"] = arguments.plc.empty() ? Json(nullptr) : Json(arguments.plc);
+        json["weights"] = arguments.weights.empty() ? Json(nullptr) : Json(arguments.weights);
         json["options"] = to_json(arguments.options);
         json["exit_status"] = status;
         json["vertices"] = mesh.vertices.size();
@@ -55,6 +57,8 @@ void add_check_command(CLI::App& program, Command& selected) {
     auto arguments = std::make_shared<CheckCommand>();
     command.add_option("MESH", arguments->mesh, "tetrahedral mesh of any tool: .mesh (ASCII), .node/.ele")->required()->type_name("");
     command.add_option("--plc", arguments->plc, "the domain that the mesh claims to fill (default: claims about it are not checked)")->type_name("FILE");
+    command.add_option("--weights", arguments->weights, "the vertices' weights, .sol or .node: the mesh claims to be weighted Delaunay (default: Delaunay)")
+        ->type_name("FILE");
     add_certify_flags(command, arguments->options);
     add_json_flag(command, arguments->json);
     command.add_flag("--quiet", arguments->quiet, "no report; the exit status says it: 0 no claim refuted, 1 otherwise");

@@ -162,6 +162,7 @@ Json to_json(const MeshStatistics& statistics) {
     json["interior_vertices"] = statistics.interior_vertices;
     json["moved_vertices"] = statistics.moved_vertices;
     json["removed_vertices"] = statistics.removed_vertices;
+    json["weighted_vertices"] = statistics.weighted_vertices;
     json["guarded_insertions"] = statistics.guarded_insertions;
     json["exact_predicate_calls"] = statistics.exact_predicate_calls;
     json["coplanar_tolerance"] = statistics.coplanar_tolerance;

@@ -62,6 +62,9 @@ std::string render(const MeshResult& result, const std::vector<StageTime>& stage
     const MeshStatistics& s = result.statistics;
     if (s.certificate_tolerance > defaults.tolerance || s.certificate_flat_angle_rad > defaults.flat_angle_rad)
         text += fmt::format("note: the input's rounding shows in the mesh: check it with --tolerance {:.4g} --flat-angle {:.4g}\n", s.certificate_tolerance, s.certificate_flat_angle_rad);
+    if (s.weighted_vertices > 0)
+        text += fmt::format("note: the mesh is weighted Delaunay: {} of {} vertices have a weight; check it with --weights\n", s.weighted_vertices,
+                            result.mesh.vertices.size());
     for (const std::string& note : result.statistics.notes) text += "note: " + note + '\n';
     for (const auto& file : files) text += "wrote " + file.string() + '\n';
     return text;

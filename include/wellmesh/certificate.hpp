@@ -71,7 +71,8 @@ struct CertifyOptions {
     std::stop_token stop{};         ///< polled between claims: the ones not reached stay `not_checked`
 };
 
-/// Proves or refutes P1-P4 for any tool's mesh. Never throws on a wrong mesh: that is a refuted claim.
+/// Proves or refutes P1-P4 for any tool's mesh. Never throws on a wrong mesh: that is a refuted claim. With weights (TetMesh::weights) the claims
+/// `weighted_delaunay`, `weighted_gabriel_subfaces` and `weighted_gabriel_subsegments` stand in place of those without "weighted".
 /// @param plc  the input that the mesh claims to fill; nullptr: claims about it stay `not_checked`.
 [[nodiscard]] Certificate certify(const TetMesh& mesh, const CertifyOptions& options = {}, const Plc* plc = nullptr);
 

@@ -2,6 +2,7 @@
 // Files. Formats go by extension; errors name file, line and token. Writers write a temporary file and rename it.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <stop_token>
 #include <vector>
@@ -22,6 +23,10 @@ namespace wellmesh {
 /// Reads a tetrahedral mesh: MEDIT .mesh (ASCII), .node/.ele.
 [[nodiscard]] TetMesh read_mesh(const std::filesystem::path& path);
 
+/// Reads the weights of a mesh's vertices: MEDIT's solution format (.sol, one scalar a vertex), or the attribute of a .node.
+/// @param vertices  how many there must be. @throws MeshError  cannot_read, bad_input (file, line, token).
+[[nodiscard]] std::vector<double> read_weights(const std::filesystem::path& path, std::size_t vertices);
+
 /// Which flavour of a format to write where there are several.
 struct WriteOptions {
     int msh_version = 41;    ///< 41 or 22
@@ -29,7 +34,8 @@ struct WriteOptions {
     std::stop_token stop{};  ///< polled while writing; when requested: MeshError{cancelled}, and no file is left
 };
 
-/// Writes .mesh .vtu .msh, or .node/.ele/.face/.edge (named after the .node or .ele path).
+/// Writes .mesh .vtu .msh, or .node/.ele/.face/.edge (named after the .node or .ele path). Where the mesh has weights they are a point field of
+/// a .vtu, node data of a .msh, the attribute of a .node, and beside a .mesh a .sol file (docs/conventions.md).
 /// @return the files written. @throws MeshError  cannot_write; then no file is left half written.
 std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::filesystem::path& path, const WriteOptions& options = {});
 

@@ -29,13 +29,14 @@ inline constexpr double kPracticalB = 2;        ///< of refine; improve asks of 
 inline constexpr double kCertifiedDelta = 0.05, kCertifiedB = 4.5, kCertifiedRadiusEdgeRatio = 20, kCertifiedSigma = 0.01;
 
 /// How slivers are kept away or removed: the systems that the paper compares with, each as its own source describes it, and this program's own
-/// way (docs/strategies.md). All of them keep the mesh Delaunay, conforming and Gabriel, and all end, whether the goal is reached or not.
+/// way (docs/strategies.md). All of them keep the mesh Delaunay, conforming and Gabriel (exude: with respect to its weights), and all end,
+/// whether the goal is reached or not.
 enum class SliverStrategy : std::uint8_t {
     none,     ///< Delaunay refinement [Shewchuk98]; slivers stay
     refine,   ///< slivers are split by points that make no new small ones [LiTeng01, section 3]
     improve,  ///< the same, but only where the local mesh gets better [LiTeng01, section 6]
     chew,     ///< uniform density, random points within half a unit of the circumcentres [Chew97]
-    exude,    ///< weights on the vertices [Cheng00]
+    exude,    ///< weights on the vertices: the mesh is weighted Delaunay [Cheng00]
     perturb,  ///< vertices are smoothed and perturbed, none comes or goes [EdelsbrunnerEtAl00, Tournois09]
     best      ///< all of it that helps; in certified mode what the paper describes
 };

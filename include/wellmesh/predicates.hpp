@@ -25,4 +25,23 @@ enum class Sign : std::int8_t { negative = -1, zero = 0, positive = 1 };
 /// @pre a, b, c are not collinear.
 [[nodiscard]] Sign side_of_equatorial_sphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
 
+/// A point with a weight, the square of the radius of a ball about it: lengths squared. May be negative; only differences count.
+struct WeightedPoint {
+    Vec3 point;
+    double weight = 0;
+};
+
+// The power of p with respect to the sphere about c of radius r is |p - c|^2 - r^2; p is orthogonal to the sphere if that is its weight,
+// and *in conflict* with it if it is less. With equal weights, in conflict is strictly inside.
+
+/// Positive iff e is in conflict with the sphere orthogonal to the positive tetrahedron (a, b, c, d), i.e. iff the four are no tetrahedron of
+/// the weighted Delaunay triangulation of the five; zero iff it is orthogonal.
+[[nodiscard]] Sign power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d, const WeightedPoint& e);
+
+/// Positive iff p is in conflict with the smallest sphere that is orthogonal to a and b. @pre a, b are not at one place.
+[[nodiscard]] Sign diametral_power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& p);
+
+/// Positive iff p is in conflict with the smallest sphere that is orthogonal to a, b and c. @pre a, b, c are not collinear.
+[[nodiscard]] Sign equatorial_power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& p);
+
 }  // namespace wellmesh

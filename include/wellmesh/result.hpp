@@ -35,6 +35,7 @@ struct MeshStatistics {
     std::vector<StageTime> stages;
     std::uint64_t input_vertices = 0, segment_vertices = 0, facet_vertices = 0, interior_vertices = 0;
     std::uint64_t moved_vertices = 0, removed_vertices = 0;
+    std::uint64_t weighted_vertices = 0;      ///< with a weight above 0: then the mesh is weighted Delaunay
     std::uint64_t guarded_insertions = 0;     ///< refused: would have made an edge below the bound of Theorem 4.2
     std::uint64_t exact_predicate_calls = 0;  ///< decided by expansion arithmetic
     double coplanar_tolerance = 0;            ///< the largest local tolerance that was used, input units

@@ -24,6 +24,9 @@ struct TetMesh {
     std::vector<Vec3> vertices;
     std::vector<VertexCarrier> vertex_carriers;  ///< empty when the mesh was read from a file
 
+    /// Squares of lengths, one a vertex. Where there are any the mesh is *weighted* Delaunay, and need not be Delaunay (docs/conventions.md). Empty: none.
+    std::vector<double> weights;
+
     std::vector<std::array<std::uint32_t, 4>> tets;
     std::vector<std::int32_t> tet_regions;  ///< region reference of each tetrahedron
 

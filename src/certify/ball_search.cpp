@@ -28,12 +28,26 @@ LongVec operator*(Long s, const LongVec& a) { return {s * a[0], s * a[1], s * a[
 LongVec operator+(const LongVec& a, const LongVec& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Long norm(const LongVec& a) { return std::sqrt(dot(a, a)); }
 
+/// An edge of a weighted simplex from its base, its lift, and a bound of the lift's terms.
+struct WeightedEdge {
+    LongVec along;
+    Long squared, lift, terms;
+    WeightedEdge(const WeightedPoint& to, const WeightedPoint& base, double scale)
+        : along(difference(to.point, base.point, scale)), squared(dot(along, along)), lift(squared), terms(squared) {
+        const Long s2 = static_cast<Long>(scale) * static_cast<Long>(scale);
+        lift -= s2 * (static_cast<Long>(to.weight) - static_cast<Long>(base.weight));
+        terms += s2 * (std::abs(static_cast<Long>(to.weight)) + std::abs(static_cast<Long>(base.weight)));
+    }
+};
+
 }  // namespace
 
-BallSearch::BallSearch(const std::vector<Vec3>& points) : originals_(&points), order_(points.size()) {
+BallSearch::BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights)
+    : originals_(&points), weights_(weights.empty() ? nullptr : &weights), order_(points.size()) {
     double largest = 0;
     for (const Vec3& p : points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     if (largest > 0) scale_ = std::ldexp(1.0, -std::ilogb(largest) - 1);
+    if (weights_ != nullptr) largest_weight_ = scale_ * *std::max_element(weights.begin(), weights.end()) * scale_;
     std::iota(order_.begin(), order_.end(), 0U);
     std::size_t nodes = 1;
     for (std::size_t n = points.size(); n > kLeaf; n = n - n / 2) nodes = 2 * nodes + 1;
@@ -76,9 +90,10 @@ void BallSearch::build(std::size_t begin, std::size_t end, std::size_t node) {
 // sums of at most 12 products of at most 6 rounded factors, so 64 roundings of the sum of absolute products (a_scale, n_scale bound
 // it) are more than enough. Rounding them to double, subtracting p - a, and evaluating f cost at most 8 roundings of double relative
 // to A |q|^2 and to |N_k q_k|, which are folded into a_low and n_error.
-Ball BallSearch::finish(const Vec3& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const {
+Ball BallSearch::finish(const WeightedPoint& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const {
     Ball ball;
-    ball.base = scale_ * base;
+    ball.base = scale_ * base.point;
+    ball.base_weight = scale_ * base.weight * scale_;
     ball.a = static_cast<double>(a);
     const Long a_error = 64 * kLongUnit * a_scale;
     ball.a_low = static_cast<double>(std::max(Long{0}, (a - a_error) * (1 - 16 * static_cast<Long>(kUnit))));
@@ -87,25 +102,30 @@ Ball BallSearch::finish(const Vec3& base, long double a, const std::array<long d
         ball.n_error[k] = static_cast<double>(64 * kLongUnit * n_scale) + 16 * kUnit * std::abs(ball.n[k]);
     }
     ball.radius_squared = static_cast<double>(dot(n, n) / (4 * a * a));
+    if (weights_ != nullptr) {
+        const Long largest_difference = std::max(Long{0}, static_cast<Long>(largest_weight_) - static_cast<Long>(ball.base_weight));
+        ball.allowance = static_cast<double>((a + a_error) * (1 + 16 * static_cast<Long>(kUnit)) * largest_difference);
+    }
     return ball;
 }
 
-Ball BallSearch::circumball(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
-    const LongVec u = difference(b, a, scale_), v = difference(c, a, scale_), w = difference(d, a, scale_);
-    const LongVec vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
-    const Long uu = dot(u, u), vv = dot(v, v), ww = dot(w, w), product = norm(u) * norm(v) * norm(w);
-    return finish(a, dot(u, vw), uu * vw + vv * wu + ww * uv, product, product * (norm(u) + norm(v) + norm(w)));
+Ball BallSearch::circumball(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d) const {
+    const WeightedEdge eu(b, a, scale_), ev(c, a, scale_), ew(d, a, scale_);
+    const LongVec &u = eu.along, &v = ev.along, &w = ew.along, vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
+    const Long lu = norm(u), lv = norm(v), lw = norm(w);
+    return finish(a, dot(u, vw), eu.lift * vw + ev.lift * wu + ew.lift * uv, lu * lv * lw, eu.terms * lv * lw + ev.terms * lw * lu + ew.terms * lu * lv);
 }
 
-Ball BallSearch::equatorial_ball(const Vec3& a, const Vec3& b, const Vec3& c) const {
-    const LongVec u = difference(b, a, scale_), v = difference(c, a, scale_), n = cross(u, v);
-    const Long uu = dot(u, u), vv = dot(v, v), product = uu * vv;
-    return finish(a, dot(n, n), uu * cross(v, n) + vv * cross(n, u), product, product * (norm(u) + norm(v)));
+Ball BallSearch::equatorial_ball(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c) const {
+    const WeightedEdge eu(b, a, scale_), ev(c, a, scale_);
+    const LongVec &u = eu.along, &v = ev.along, n = cross(u, v);
+    const Long lu = norm(u), lv = norm(v);
+    return finish(a, dot(n, n), eu.lift * cross(v, n) + ev.lift * cross(n, u), eu.squared * ev.squared, lu * lv * (eu.terms * lv + ev.terms * lu));
 }
 
-Ball BallSearch::diametral_ball(const Vec3& a, const Vec3& b) const {
-    const LongVec u = difference(b, a, scale_);
-    return finish(a, 1, u, 1, norm(u));
+Ball BallSearch::diametral_ball(const WeightedPoint& a, const WeightedPoint& b) const {
+    const WeightedEdge e(b, a, scale_);
+    return finish(a, 1, (e.lift / e.squared) * e.along, 1, (e.terms / e.squared) * norm(e.along));
 }
 
 bool BallSearch::excludes(const Ball& ball, const Box& box) {
@@ -122,21 +142,22 @@ bool BallSearch::excludes(const Ball& ball, const Box& box) {
         // The bottom's own rounding and that of the sum: relative to the terms, of which n x is the larger where f is near 0.
         slack += (ball.n_error[k] + 16 * kUnit * std::abs(ball.n[k])) * std::max(std::abs(low), std::abs(high));
     }
-    return lowest > slack;
+    return lowest - ball.allowance > slack;
 }
 
 bool BallSearch::excludes(const Ball& ball, const Vec3& point) {
     const Vec3 q = point - ball.base;
     const double f = ball.a_low * squared_norm(q) - (ball.n[0] * q.x + ball.n[1] * q.y + ball.n[2] * q.z);
     const double slack = 2 * (ball.n_error[0] * std::abs(q.x) + ball.n_error[1] * std::abs(q.y) + ball.n_error[2] * std::abs(q.z));
-    return f > slack;
+    return f - ball.allowance > slack;
 }
 
 double BallSearch::depth(const Ball& ball, std::uint32_t vertex) const {
     const LongVec q = difference((*originals_)[vertex], (1 / scale_) * ball.base, scale_);
-    const Long a = static_cast<Long>(ball.a);
+    const Long a = static_cast<Long>(ball.a), base_weight = static_cast<Long>(ball.base_weight);
+    const Long weight = weights_ == nullptr ? 0 : static_cast<Long>(scale_) * static_cast<Long>((*weights_)[vertex]) * static_cast<Long>(scale_);
     const Long f = a * dot(q, q) - (static_cast<Long>(ball.n[0]) * q[0] + static_cast<Long>(ball.n[1]) * q[1] + static_cast<Long>(ball.n[2]) * q[2]);
-    return static_cast<double>(-f / (a * static_cast<Long>(ball.radius_squared)));
+    return static_cast<double>((a * (weight - base_weight) - f) / (a * (static_cast<Long>(ball.radius_squared) + std::abs(base_weight) + std::abs(weight))));
 }
 
 }  // namespace wellmesh::certifying

@@ -8,6 +8,9 @@
 // normal n = u x v, A = |n|^2 and N = |u|^2 v x n + |v|^2 n x u; for the diametral ball of an edge A = 1 and N = u. So balls of almost
 // flat simplices, whose centres no double holds, are searched as well as others: f is a sum of one parabola a coordinate, and its
 // minimum over a box is the sum of three minima over intervals.
+//
+// With weights the ball is that of the sphere orthogonal to the corners: |u|^2 - w_b + w_a stands for |u|^2 in N, and so on, and p is in
+// conflict iff f(q) < A (w_p - w_a). The search allows for the largest weight of all.
 #pragma once
 
 #include <array>
@@ -15,6 +18,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "wellmesh/predicates.hpp"
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh::certifying {
@@ -26,25 +30,28 @@ struct Ball {
     std::array<double, 3> n{};
     std::array<double, 3> n_error{};  ///< of each component, rounding of later evaluations included
     double a_low = 0;                 ///< at most A; 0 when not even its sign is sure: then nothing is pruned by distance
-    double radius_squared = 0;        ///< |N|^2 / (4 A^2), rounded
+    double allowance = 0;             ///< at least A (w_p - w_a) for every vertex p
+    double base_weight = 0;           ///< w_a, scaled
+    double radius_squared = 0;        ///< |N|^2 / (4 A^2), rounded: of the base's distance from the centre
 };
 
 class BallSearch {
 public:
-    explicit BallSearch(const std::vector<Vec3>& points);
+    /// @param weights  of all points, or empty. Both must outlive this.
+    explicit BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights = {});
 
-    [[nodiscard]] Ball circumball(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const;
-    [[nodiscard]] Ball equatorial_ball(const Vec3& a, const Vec3& b, const Vec3& c) const;
-    [[nodiscard]] Ball diametral_ball(const Vec3& a, const Vec3& b) const;
+    [[nodiscard]] Ball circumball(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d) const;
+    [[nodiscard]] Ball equatorial_ball(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c) const;
+    [[nodiscard]] Ball diametral_ball(const WeightedPoint& a, const WeightedPoint& b) const;
 
-    /// Calls visit(vertex) for a superset of the vertices strictly inside the ball, until it returns true. @return whether it did.
+    /// Calls visit(vertex) for a superset of the vertices strictly inside the ball, or in conflict, until it returns true. @return whether it did.
     template <class Visit>
     bool any_in(const Ball& ball, Visit&& visit) const {
         return !order_.empty() && search(ball, 0, order_.size(), 0, root_, visit);
     }
 
     /// By how much the vertex is inside, as a fraction of the squared radius: 1 - |p - centre|^2 / R^2, rounded (64 bits of mantissa
-    /// where long double has them).
+    /// where long double has them). With weights: its weight minus its power, over |a - centre|^2 + |w_a| + |w_p|.
     [[nodiscard]] double depth(const Ball& ball, std::uint32_t vertex) const;
 
 private:
@@ -53,7 +60,7 @@ private:
     };
     static constexpr std::size_t kLeaf = 8;
 
-    [[nodiscard]] Ball finish(const Vec3& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const;
+    [[nodiscard]] Ball finish(const WeightedPoint& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const;
     void build(std::size_t begin, std::size_t end, std::size_t node);
     [[nodiscard]] static bool excludes(const Ball& ball, const Box& box);
     [[nodiscard]] static bool excludes(const Ball& ball, const Vec3& point);
@@ -81,6 +88,8 @@ private:
 
     double scale_ = 1;                 // power of two: tree coordinates are at most 1, so no fourth power under- or overflows
     const std::vector<Vec3>* originals_;
+    const std::vector<double>* weights_;  // null: none
+    double largest_weight_ = 0;           // scaled
     std::vector<std::uint32_t> order_;  // a node's points are contiguous, its first half before its cut
     std::vector<Vec3> points_;          // scaled, in this order
     std::vector<std::uint8_t> axes_;    // of each inner node, heap numbering

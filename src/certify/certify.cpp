@@ -27,11 +27,15 @@ namespace {
 using namespace certifying;
 
 Claim claim_finite(const TetMesh& mesh) {
-    ClaimBuilder claim("finite_coordinates", "Every coordinate is finite and within the range in which predicates are exact.");
+    ClaimBuilder claim("finite_coordinates", fmt::format("Every coordinate{} is finite and within the range in which predicates are exact.",
+                                                         mesh.weights.empty() ? "" : " and weight"));
     claim.checked(mesh.vertices.size());
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
         if (!in_exact_range(flush_to_exact_range(mesh.vertices[v])))
             claim.violated(EntityKind::vertex, v + 1, mesh.vertices[v], [&] { return fmt::format("vertex {} is at {}", v + 1, text_of(mesh.vertices[v])); });
+    for (std::size_t v = 0; v < std::min(mesh.weights.size(), mesh.vertices.size()); ++v)
+        if (const double w = mesh.weights[v]; !weight_in_exact_range(std::fabs(w) < kMinWeight ? 0 : w))
+            claim.violated(EntityKind::vertex, v + 1, mesh.vertices[v], [&] { return fmt::format("vertex {} has weight {}", v + 1, w); });
     return claim.decided();
 }
 
@@ -51,6 +55,7 @@ Claim claim_numbers(const TetMesh& mesh) {
         if (have != 0 && have != want) claim.violated(EntityKind::file, 0, Vec3{}, [&] { return fmt::format("{} {} for {} elements", have, what, want); });
     };
     length(mesh.tet_regions.size(), mesh.tets.size(), "region references");
+    length(mesh.weights.size(), mesh.vertices.size(), "weights");
     length(mesh.vertex_carriers.size(), mesh.vertices.size(), "vertex carriers");
     length(mesh.subface_facets.size(), mesh.subfaces.size(), "facet references");
     length(mesh.subface_markers.size(), mesh.subfaces.size(), "facet markers");
@@ -150,7 +155,7 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
                                  faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh)});
     poll();
     {
-        const BallSearch search(mesh.points());
+        const BallSearch search(mesh.points(), mesh.weights());
         const GabrielFindings subfaces = claim_gabriel_subfaces(mesh, search, faces.constraints);
         poll();
         const bool by_faces = faces_in_order && disjoint.state == Claim::State::proven && faces.locally_not_delaunay == 0 && !broken(used) && subfaces.touched_hull_faces == 0;
@@ -196,6 +201,7 @@ Certificate certify(const TetMesh& mesh, const CertifyOptions& options, const Pl
     TetMesh stand_in;
     stand_in.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     stand_in.tets = {{0, 1, 2, 3}};
+    if (!mesh.weights.empty()) stand_in.weights.assign(4, 0);
     Certificate names;
     append_geometric_claims(SuspectMesh(stand_in), {}, nullptr, names);
     for (const Claim& c : names.claims)

@@ -167,10 +167,7 @@ private:
             return;
         }
         if (!mesh_.positive(t0) || !mesh_.positive(t1)) return;
-        const auto& v = mesh_.mesh().tets[t0];
-        const Sign in = mesh_.predicates().insphere(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]),
-                                                    mesh_.point(apex(mesh_.mesh().tets[t1], face)));
-        survey_.locally_not_delaunay += in == Sign::positive;
+        survey_.locally_not_delaunay += mesh_.in_sphere(t0, apex(mesh_.mesh().tets[t1], face)) == Sign::positive;
     }
 
     /// Passes the listed triangles that come before `face` (they are no faces) and those equal to it.

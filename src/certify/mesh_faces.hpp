@@ -11,7 +11,7 @@ namespace wellmesh::certifying {
 
 struct FaceSurvey {
     std::uint64_t faces = 0, interior_faces = 0, boundary_faces = 0;  ///< distinct; of two or more, and of exactly one tetrahedron
-    /// Of exactly two positive tetrahedra: the apex of one is strictly inside the circumsphere of the other.
+    /// Of exactly two positive tetrahedra: the apex of one is strictly inside the circumsphere of the other (in conflict, with weights).
     std::uint64_t locally_not_delaunay = 0;
     std::uint64_t two_sided_faces = 0;             ///< of exactly two tetrahedra, looked at for `opposite_sides`
     std::vector<ConstraintTriangle> constraints;   ///< ascending by vertices, each triangle once

@@ -146,7 +146,9 @@ Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriang
 }
 
 Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool proven_by_faces) {
-    ClaimBuilder claim("delaunay", "No vertex lies strictly inside the circumsphere of a tetrahedron.");
+    const bool weighted = mesh.is_weighted();
+    ClaimBuilder claim = weighted ? ClaimBuilder("weighted_delaunay", "No vertex is in conflict with the sphere orthogonal to a tetrahedron.")
+                                  : ClaimBuilder("delaunay", "No vertex lies strictly inside the circumsphere of a tetrahedron.");
     std::uint64_t positive = 0;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) positive += mesh.positive(t);
     claim.checked(positive);
@@ -155,35 +157,41 @@ Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool pro
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         if (!mesh.positive(t)) continue;
         const Tet& v = mesh.mesh().tets[t];
-        const Vec3 &a = mesh.point(v[0]), &b = mesh.point(v[1]), &c = mesh.point(v[2]), &d = mesh.point(v[3]);
-        const Ball ball = search.circumball(a, b, c, d);
+        const Ball ball = search.circumball(mesh.weighted(v[0]), mesh.weighted(v[1]), mesh.weighted(v[2]), mesh.weighted(v[3]));
         std::uint32_t intruder = kNone;
         const bool found = search.any_in(ball, [&](std::uint32_t q) {
             if (has(v, q)) return false;
             intruder = q;
-            return mesh.predicates().insphere(a, b, c, d, mesh.point(q)) == Sign::positive;
+            return mesh.in_sphere(t, q) == Sign::positive;
         });
         if (found)
             claim.violated(EntityKind::tetrahedron, number(t), mesh.tet_centroid(t), [&] {
-                return fmt::format("vertex {} at {} is inside its circumsphere, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)), search.depth(ball, intruder));
+                return fmt::format("vertex {} at {} is {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
+                                   weighted ? "in conflict with its orthogonal sphere" : "inside its circumsphere", search.depth(ball, intruder));
             });
     }
     return claim.decided();
 }
 
 GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles) {
-    ClaimBuilder claim("gabriel_subfaces", "No vertex lies inside the equatorial sphere of a constraint triangle (on the hull, between regions, or listed).");
+    const bool weighted = mesh.is_weighted();
+    ClaimBuilder claim(weighted ? "weighted_gabriel_subfaces" : "gabriel_subfaces",
+                       fmt::format("No vertex {} sphere {} a constraint triangle (on the hull, between regions, or listed).",
+                                   weighted ? "is in conflict with the smallest" : "lies inside the equatorial", weighted ? "orthogonal to" : "of"));
     claim.checked(triangles.size());
     std::uint64_t touched_hull_faces = 0, touched = 0;
     for (const ConstraintTriangle& t : triangles) {
-        const Vec3 &a = mesh.point(t.v[0]), &b = mesh.point(t.v[1]), &c = mesh.point(t.v[2]);
+        const WeightedPoint a = mesh.weighted(t.v[0]), b = mesh.weighted(t.v[1]), c = mesh.weighted(t.v[2]);
         const Ball ball = search.equatorial_ball(a, b, c);
+        const auto side = [&](std::uint32_t q) {
+            return weighted ? equatorial_power_test(a, b, c, mesh.weighted(q)) : side_of_equatorial_sphere(a.point, b.point, c.point, mesh.point(q));
+        };
         if (!(ball.a > 0)) continue;  // collinear corners span no sphere; such a triangle is no face of a positive tetrahedron
         std::uint32_t intruder = kNone;
         bool inside = false;
         const bool encroached = search.any_in(ball, [&](std::uint32_t q) {
             if (q == t.v[0] || q == t.v[1] || q == t.v[2]) return false;
-            if (side_of_equatorial_sphere(a, b, c, mesh.point(q)) != Sign::positive) return false;
+            if (side(q) != Sign::positive) return false;
             inside = true;
             intruder = q;
             return search.depth(ball, q) > kGabrielMargin;
@@ -192,8 +200,9 @@ GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch
         touched += inside && !encroached;
         if (encroached)
             claim.violated(EntityKind::triangle, t.listed == kNone ? 0 : number(t.listed), mesh.centroid(t.v.data(), 3), [&] {
-                return fmt::format("vertex {} at {} is inside the equatorial sphere of {} {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
-                                   t.v[0] + 1, t.v[1] + 1, t.v[2] + 1, search.depth(ball, intruder));
+                return fmt::format("vertex {} at {} is {} sphere of {} {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
+                                   weighted ? "in conflict with the orthogonal" : "inside the equatorial", t.v[0] + 1, t.v[1] + 1, t.v[2] + 1,
+                                   search.depth(ball, intruder));
             });
     }
     if (touched > 0) claim.note(fmt::format("{} more have a vertex inside by less than {:g} of the squared radius", touched, kGabrielMargin));
@@ -201,17 +210,23 @@ GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch
 }
 
 Claim claim_gabriel_subsegments(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintSegment>& segments) {
-    ClaimBuilder claim("gabriel_subsegments", "No vertex lies inside the diametral sphere of a constraint edge (where constraint triangles bend or meet, or listed).");
+    const bool weighted = mesh.is_weighted();
+    ClaimBuilder claim(weighted ? "weighted_gabriel_subsegments" : "gabriel_subsegments",
+                       fmt::format("No vertex {} sphere {} a constraint edge (where constraint triangles bend or meet, or listed).",
+                                   weighted ? "is in conflict with the smallest" : "lies inside the diametral", weighted ? "orthogonal to" : "of"));
     claim.checked(segments.size());
     std::uint64_t touched = 0;
     for (const ConstraintSegment& s : segments) {
-        const Vec3 &a = mesh.point(s.v[0]), &b = mesh.point(s.v[1]);
-        if (a == b) continue;
+        const WeightedPoint a = mesh.weighted(s.v[0]), b = mesh.weighted(s.v[1]);
+        if (a.point == b.point) continue;
         const Ball ball = search.diametral_ball(a, b);
+        const auto side = [&](std::uint32_t q) {
+            return weighted ? diametral_power_test(a, b, mesh.weighted(q)) : side_of_diametral_sphere(a.point, b.point, mesh.point(q));
+        };
         std::uint32_t intruder = kNone;
         bool inside = false;
         const bool encroached = search.any_in(ball, [&](std::uint32_t q) {
-            if (q == s.v[0] || q == s.v[1] || side_of_diametral_sphere(a, b, mesh.point(q)) != Sign::positive) return false;
+            if (q == s.v[0] || q == s.v[1] || side(q) != Sign::positive) return false;
             inside = true;
             intruder = q;
             return search.depth(ball, q) > kGabrielMargin;
@@ -219,8 +234,8 @@ Claim claim_gabriel_subsegments(const SuspectMesh& mesh, const BallSearch& searc
         touched += inside && !encroached;
         if (encroached)
             claim.violated(EntityKind::edge, s.listed == kNone ? 0 : number(s.listed), mesh.centroid(s.v.data(), 2), [&] {
-                return fmt::format("vertex {} at {} is inside the diametral sphere of {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)), s.v[0] + 1,
-                                   s.v[1] + 1, search.depth(ball, intruder));
+                return fmt::format("vertex {} at {} is {} sphere of {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
+                                   weighted ? "in conflict with the orthogonal" : "inside the diametral", s.v[0] + 1, s.v[1] + 1, search.depth(ball, intruder));
             });
     }
     if (touched > 0) claim.note(fmt::format("{} more have a vertex inside by less than {:g} of the squared radius", touched, kGabrielMargin));

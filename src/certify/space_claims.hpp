@@ -25,6 +25,13 @@
 //     neighbour of it, unless p is on a hull face, or on an edge of one, without being its corner: then p is strictly inside its
 //     equatorial sphere, excluded.
 //     Hence `delaunay` is proven by the faces where these premises hold; otherwise every circumball is searched.
+//
+// (3) The same with weights: read "in conflict with the orthogonal sphere" for "strictly inside the circumsphere", and so on. Beyond a locally
+//     regular face the power with respect to the orthogonal sphere of the tetrahedron behind it is at most that of the one before. Spheres
+//     orthogonal to a hull face F form a pencil: their powers of x differ by a multiple of x's height over F. tau's apex, not in conflict
+//     with F's smallest sphere, has there at least the power it has in tau's, which is its weight; so beyond F it is the other way round, and p
+//     is in conflict with F's smallest sphere, too: excluded. The walk ends at p in a tetrahedron; if p is on a hull face without being its corner,
+//     its height is 0 and both powers are equal: excluded again.
 #pragma once
 
 #include <vector>
@@ -39,7 +46,8 @@ namespace wellmesh::certifying {
 /// @param faces_in_order  the premises of (1) hold: otherwise a clean search proves nothing.
 [[nodiscard]] Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order);
 
-/// No vertex strictly inside the circumsphere of a positive tetrahedron; exact and global. Counts tetrahedra with at least one.
+/// No vertex strictly inside the circumsphere of a positive tetrahedron (or in conflict with its orthogonal sphere, with weights); exact
+/// and global. Counts tetrahedra with at least one.
 /// @param proven_by_faces  the premises of (2) hold.
 [[nodiscard]] Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool proven_by_faces);
 

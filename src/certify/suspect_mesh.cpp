@@ -17,6 +17,9 @@ SuspectMesh::SuspectMesh(const TetMesh& mesh) : mesh_(mesh) {
         flushed_ = mesh.vertices;
         for (Vec3& p : flushed_) p = flush_to_exact_range(p);
     }
+    weights_ = mesh.weights;
+    for (double& w : weights_)
+        if (std::fabs(w) < kMinWeight) w = 0;
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Vec3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
     for (const Vec3& p : points()) {
@@ -24,12 +27,20 @@ SuspectMesh::SuspectMesh(const TetMesh& mesh) : mesh_(mesh) {
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
         largest_coordinate_ = std::max({largest_coordinate_, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     }
-    if (!points().empty()) predicates_ = PredicateFilter(high - low);
+    double weight_extent = 0;
+    if (is_weighted()) weight_extent = *std::max_element(weights_.begin(), weights_.end()) - *std::min_element(weights_.begin(), weights_.end());
+    if (!points().empty()) predicates_ = PredicateFilter(high - low, weight_extent);
     positive_.resize(mesh.tets.size());
     for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
         const auto& v = mesh.tets[t];
         positive_[t] = predicates_.orient3d(point(v[0]), point(v[1]), point(v[2]), point(v[3])) == Sign::positive;
     }
+}
+
+Sign SuspectMesh::in_sphere(std::size_t tet, std::uint32_t vertex) const {
+    const auto& v = mesh_.tets[tet];
+    if (!is_weighted()) return predicates_.insphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), point(vertex));
+    return predicates_.power_test(weighted(v[0]), weighted(v[1]), weighted(v[2]), weighted(v[3]), weighted(vertex));
 }
 
 Vec3 SuspectMesh::centroid(const std::uint32_t* v, std::size_t n) const {

@@ -36,8 +36,8 @@ struct ConstraintTriangle {
 
 class SuspectMesh {
 public:
-    /// @pre every vertex number is in range, every coordinate finite. Coordinates too small for the predicates to be exact
-    /// (predicates/exact_range.hpp) count as zero.
+    /// @pre every vertex number is in range, every coordinate and weight finite. Coordinates and weights too small for the predicates to be
+    /// exact (predicates/exact_range.hpp) count as zero.
     explicit SuspectMesh(const TetMesh& mesh);
     SuspectMesh(const SuspectMesh&) = delete;
     SuspectMesh& operator=(const SuspectMesh&) = delete;
@@ -47,8 +47,14 @@ public:
     [[nodiscard]] std::size_t tet_count() const { return mesh_.tets.size(); }
     [[nodiscard]] const Vec3& point(std::uint32_t v) const { return points()[v]; }
     [[nodiscard]] const std::vector<Vec3>& points() const { return flushed_.empty() ? mesh_.vertices : flushed_; }
+    [[nodiscard]] bool is_weighted() const { return !weights_.empty(); }
+    [[nodiscard]] WeightedPoint weighted(std::uint32_t v) const { return {point(v), weights_.empty() ? 0 : weights_[v]}; }
+    /// Of all vertices; empty: none.
+    [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
     [[nodiscard]] const PredicateFilter& predicates() const { return predicates_; }
     [[nodiscard]] bool positive(std::size_t tet) const { return positive_[tet]; }
+    /// Positive: the vertex is strictly inside the circumsphere of the positive tetrahedron or, with weights, in conflict with its orthogonal sphere.
+    [[nodiscard]] Sign in_sphere(std::size_t tet, std::uint32_t vertex) const;
     [[nodiscard]] std::int32_t region(std::size_t tet) const { return mesh_.tet_regions.empty() ? 0 : mesh_.tet_regions[tet]; }
     [[nodiscard]] Vec3 centroid(const std::uint32_t* v, std::size_t n) const;
     [[nodiscard]] Vec3 tet_centroid(std::size_t tet) const { return centroid(mesh_.tets[tet].data(), 4); }
@@ -57,6 +63,7 @@ public:
 private:
     const TetMesh& mesh_;
     std::vector<Vec3> flushed_;  // empty unless some coordinate had to be
+    std::vector<double> weights_;
     PredicateFilter predicates_;
     std::vector<bool> positive_;
     double largest_coordinate_ = 0;

@@ -39,6 +39,10 @@ void check_writable(const TetMesh& mesh) {
         mesh.subface_markers.size() != mesh.subfaces.size() || mesh.subsegment_segments.size() != mesh.subsegments.size())
         throw MeshError(ErrorCode::bad_input, Stage::write, "cannot write: the mesh's arrays of one kind of element differ in length");
     check_finite(mesh.vertices);
+    if (!mesh.weights.empty() && mesh.weights.size() != mesh.vertices.size())
+        throw MeshError(ErrorCode::bad_input, Stage::write, "cannot write: the mesh has another number of weights than of vertices");
+    for (std::size_t v = 0; v < mesh.weights.size(); ++v)
+        if (!std::isfinite(mesh.weights[v])) bad_output(EntityKind::vertex, v, fmt::format("{} (from 0) has a weight that is not finite", v));
     const auto check = [&](const auto& elements, EntityKind kind) {
         for (std::size_t i = 0; i < elements.size(); ++i)
             for (const std::uint32_t v : elements[i]) check_corner(v, mesh.vertices.size(), kind, i);
@@ -99,15 +103,25 @@ TetMesh read_mesh(const std::filesystem::path& path) {
     unknown_format(ErrorCode::cannot_read, Stage::read, "read a mesh from", path, ".mesh .node .ele");
 }
 
+std::vector<double> read_weights(const std::filesystem::path& path, std::size_t vertices) {
+    const std::string extension = io::lower_case_extension(path);
+    if (extension != ".sol" && extension != ".node") unknown_format(ErrorCode::cannot_read, Stage::read, "read weights from", path, ".sol .node");
+    const io::SourceFile source = io::read_source(path);
+    std::vector<double> weights = extension == ".sol" ? io::read_medit_weights(source) : io::read_node_weights(source);
+    if (weights.size() != vertices) io::fail_in_file(source, fmt::format("the file has {} weights, the mesh {} vertices", weights.size(), vertices));
+    return weights;
+}
+
 std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
     const std::string extension = io::lower_case_extension(path);
     if (options.msh_version != 41 && options.msh_version != 22)
         throw MeshError(ErrorCode::bad_options, Stage::write, fmt::format("msh_version is 41 or 22, not {}", options.msh_version));
     check_writable(mesh);
     io::OutputSet files(options.stop, options.sync);
-    if (extension == ".mesh")
+    if (extension == ".mesh") {
         io::write_medit(mesh, files.add(path));
-    else if (extension == ".vtu")
+        if (!mesh.weights.empty()) io::write_medit_weights(mesh.weights, files.add(std::filesystem::path(path).replace_extension(".weights.sol")));
+    } else if (extension == ".vtu")
         io::write_vtu(mesh, files.add(path));
     else if (extension == ".msh")
         (options.msh_version == 41 ? io::write_msh41 : io::write_msh22)(mesh, files.add(path));

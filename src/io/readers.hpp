@@ -26,4 +26,7 @@ namespace wellmesh::io {
 /// .node and .ele, and .face and .edge where they exist. @param path  the .node or the .ele file
 [[nodiscard]] TetMesh read_tetgen_mesh(const std::filesystem::path& path);
 
+[[nodiscard]] std::vector<double> read_medit_weights(const SourceFile& source);  ///< .sol
+[[nodiscard]] std::vector<double> read_node_weights(const SourceFile& source);   ///< first attribute of a .node
+
 }  // namespace wellmesh::io

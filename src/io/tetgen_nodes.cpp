@@ -36,7 +36,10 @@ NodeList read_node_list(TextScanner& in, TextPrecision& precision) {
             precision.note(token, *coordinate);
         }
         nodes.points.push_back(point);
-        for (std::int64_t a = 0; a < attributes; ++a) (void)in.to_real(in.next_on_line(), "an attribute");
+        for (std::int64_t a = 0; a < attributes; ++a) {
+            const double attribute = in.to_real(in.next_on_line(), "an attribute");
+            if (a == 0) nodes.first_attributes.push_back(attribute);
+        }
         if (markers == 1) nodes.markers.push_back(in.to_reference(in.next_on_line(), "a boundary marker"));
         in.skip_line();
     }

@@ -18,12 +18,13 @@ struct NodeList {
     std::vector<std::uint32_t> numbers;  ///< the list's own
     std::vector<std::int32_t> markers;   ///< empty unless the header states that there are some
     std::vector<std::uint32_t> lines;
+    std::vector<double> first_attributes;  ///< empty unless the header states that there are some
 };
 
 /// Syntax of all of TetGen's files.
 inline constexpr TextScanner::Syntax kTetgenSyntax{.hash_comments = true, .commas_separate = true, .backslash_continues = false};
 
-/// Reads "points dimension [attributes [markers]]" and the points. Attributes are checked, not kept. Columns after those that the
+/// Reads "points dimension [attributes [markers]]" and the points. Attributes after the first are checked, not kept. Columns after those that the
 /// header states are passed over, as TetGen does.
 NodeList read_node_list(TextScanner& in, TextPrecision& precision);
 

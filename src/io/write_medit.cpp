@@ -49,4 +49,15 @@ void write_medit(const TetMesh& mesh, OutputFile& out) {
     out.text("End\n");
 }
 
+void write_medit_weights(const std::vector<double>& weights, OutputFile& out) {
+    out.text("MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n");
+    out.integer(static_cast<std::int64_t>(weights.size()));
+    out.text("\n1 1\n");  // one field, a scalar
+    for (const double w : weights) {
+        out.real(w);
+        out.character('\n');
+    }
+    out.text("End\n");
+}
+
 }  // namespace wellmesh::io

@@ -188,6 +188,21 @@ std::int64_t element_count(const TetMesh& mesh) {
     return static_cast<std::int64_t>(mesh.subsegments.size() + mesh.subfaces.size() + mesh.tets.size());
 }
 
+/// Gmsh's post-processing section: one string, one real and three integers as tags, then a value a node.
+void write_weights(OutputFile& out, const std::vector<double>& weights) {
+    if (weights.empty()) return;
+    out.text("$NodeData\n1\n\"weight\"\n1\n0\n3\n0\n1\n");  // time step 0, one component
+    out.integer(static_cast<std::int64_t>(weights.size()));
+    out.character('\n');
+    for (std::size_t v = 0; v < weights.size(); ++v) {
+        out.integer(static_cast<std::int64_t>(v) + 1);
+        out.character(' ');
+        out.real(weights[v]);
+        out.character('\n');
+    }
+    out.text("$EndNodeData\n");
+}
+
 }  // namespace
 
 void write_msh41(const TetMesh& mesh, OutputFile& out) {
@@ -210,6 +225,7 @@ void write_msh41(const TetMesh& mesh, OutputFile& out) {
         }
     });
     out.text("$EndElements\n");
+    write_weights(out, mesh.weights);
 }
 
 void write_msh22(const TetMesh& mesh, OutputFile& out) {
@@ -240,6 +256,7 @@ void write_msh22(const TetMesh& mesh, OutputFile& out) {
             }
     });
     out.text("$EndElements\n");
+    write_weights(out, mesh.weights);
 }
 
 }  // namespace wellmesh::io

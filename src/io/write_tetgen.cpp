@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen's .node, .ele (region as the attribute), .face and .edge (boundary markers), counted from 1. All four are always written, so
+// TetGen's .node (weights, if there are any, as the attribute), .ele (region as the attribute), .face and .edge (boundary markers), counted
+// from 1. All four are always written, so
 // that no file of an older mesh stays beside. The marker of a face is the input's marker of its facet; of an input without markers
 // (all zero), the facet's number. That of an edge is the segment's number.
 #include <algorithm>
@@ -36,12 +37,16 @@ void write_tetgen(const TetMesh& mesh, const std::filesystem::path& path, Output
     const auto add = [&](const char* extension) -> OutputFile& { return files.add(std::filesystem::path(path).replace_extension(extension)); };
     OutputFile& nodes = add(".node");
     nodes.integer(static_cast<std::int64_t>(mesh.vertices.size()));
-    nodes.text(" 3 0 0\n");
+    nodes.text(mesh.weights.empty() ? " 3 0 0\n" : " 3 1 0\n");
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         nodes.integer(static_cast<std::int64_t>(v) + 1);
         for (const double coordinate : {mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z}) {
             nodes.character(' ');
             nodes.real(coordinate);
+        }
+        if (!mesh.weights.empty()) {
+            nodes.character(' ');
+            nodes.real(mesh.weights[v]);
         }
         nodes.character('\n');
     }

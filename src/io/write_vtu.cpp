@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// VTK XML unstructured grid: tetrahedra with region and shape, appended as raw binary with 64-bit sizes, in the byte order of
+// VTK XML unstructured grid: tetrahedra with region and shape, points with their weights if there are any, appended as raw binary with 64-bit sizes,
+// in the byte order of
 // this machine (which the file states). VTK has no notion of conforming constraints, so subfaces and subsegments are left out.
 #include <array>
 #include <bit>
@@ -54,14 +55,16 @@ void write_measure(OutputFile& out, const TetMesh& mesh, Measure measure) {
     }
 }
 
-void write_header(OutputFile& out, std::size_t points, std::size_t tets) {
+void write_header(OutputFile& out, std::size_t points, std::size_t tets, bool weighted) {
     AppendedArrays arrays;
     out.text("<?xml version=\"1.0\"?>\n");
     out.text(fmt::format("<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\">\n",
                          std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian"));
     out.text(fmt::format("<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n", points, tets));
     out.text(arrays.tag("Float64", "Points", points * sizeof(Vec3), " NumberOfComponents=\"3\""));
-    out.text("</Points>\n<Cells>\n");
+    out.text("</Points>\n");
+    if (weighted) out.text("<PointData>\n" + arrays.tag("Float64", "weight", points * sizeof(double)) + "</PointData>\n");
+    out.text("<Cells>\n");
     out.text(arrays.tag("Int64", "connectivity", 4 * tets * sizeof(std::int64_t)));
     out.text(arrays.tag("Int64", "offsets", tets * sizeof(std::int64_t)));
     out.text(arrays.tag("UInt8", "types", tets));
@@ -77,8 +80,9 @@ void write_header(OutputFile& out, std::size_t points, std::size_t tets) {
 void write_vtu(const TetMesh& mesh, OutputFile& out) {
     static_assert(sizeof(Vec3) == 3 * sizeof(double), "points are written as they lie in memory");
     const std::size_t tets = mesh.tets.size();
-    write_header(out, mesh.vertices.size(), tets);
+    write_header(out, mesh.vertices.size(), tets, !mesh.weights.empty());
     write_array(out, mesh.vertices);
+    if (!mesh.weights.empty()) write_array(out, mesh.weights);
     write_size(out, 4 * tets * sizeof(std::int64_t));
     for (const auto& tet : mesh.tets) {
         const std::array<std::int64_t, 4> wide{tet[0], tet[1], tet[2], tet[3]};

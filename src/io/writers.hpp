@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "io/atomic_file.hpp"
 #include "wellmesh/plc.hpp"
@@ -11,6 +12,8 @@
 namespace wellmesh::io {
 
 void write_medit(const TetMesh& mesh, OutputFile& out);
+/// MEDIT's solution format: one scalar a vertex.
+void write_medit_weights(const std::vector<double>& weights, OutputFile& out);
 void write_vtu(const TetMesh& mesh, OutputFile& out);
 void write_msh41(const TetMesh& mesh, OutputFile& out);
 void write_msh22(const TetMesh& mesh, OutputFile& out);

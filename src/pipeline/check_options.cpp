@@ -31,7 +31,6 @@ void check_strategy(const MeshOptions& options, std::vector<std::string>& proble
         problems.push_back(fmt::format("min dihedral angle at the boundary is for the slivers refine and improve in practical mode; {} has one goal for all", name));
     if (options.slivers == SliverStrategy::chew && !options.size.edge_length)
         problems.push_back("slivers chew needs a size (edge length): its density is uniform, and the size is its unit");
-    if (options.slivers == SliverStrategy::exude) problems.push_back("slivers can not be exude yet in this version");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
+#include "exudation/exude.hpp"
 #include "pipeline/extract_mesh.hpp"
 #include "pipeline/report_goals.hpp"
 #include "pipeline/theory_run.hpp"
@@ -118,7 +119,8 @@ private:
             if (certified || !only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
             count();
         });
-        if (verdict == RunGuard::Verdict::go_on && !certified && asks_for_shape(options_))
+        const bool exudes = options_.slivers == SliverStrategy::exude;  // the finished mesh gets weights
+        if (verdict == RunGuard::Verdict::go_on && !certified && !exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {
                 const SliverOutcome outcome = remove_slivers(mesh, boundary, refiner, guard_, options_);
                 verdict = outcome.verdict;
@@ -128,8 +130,27 @@ private:
             });
         if (!certified && only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
         result_.mesh = extract_mesh(mesh);
+        if (verdict == RunGuard::Verdict::go_on && exudes && asks_for_shape(options_))
+            timed(Stage::shape, [&] {
+                const ExudationReport report = exude(result_.mesh, options_.quality.min_dihedral_angle_deg, exudation_bounds(valid, refiner.sizes()), guard_);
+                verdict = report.verdict;
+                result_.statistics.weighted_vertices = report.weighted_vertices;
+                tets_ = result_.mesh.tets.size();
+            });
         result_.statistics.guarded_insertions = refiner.refused();
         result_.termination = termination(verdict);
+    }
+
+    /// Goals that the mesh has met stay met; sizes within the tolerance that moving vertices has, too.
+    [[nodiscard]] ExudationBounds exudation_bounds(const ValidPlc& valid, const std::vector<CellSize>& sizes) const {
+        ExudationBounds bounds;
+        bounds.max_radius_edge_ratio = options_.quality.max_radius_edge_ratio;
+        for (std::size_t c = 0; c < sizes.size(); ++c) {
+            ExudationBounds::Size& size = bounds.size_of_region[valid.cells[c].region];
+            size.max_squared_circumradius = std::min(size.max_squared_circumradius, kSizeTolerance * kSizeTolerance * sizes[c].max_squared_circumradius);
+            size.max_volume = std::min(size.max_volume, sizes[c].max_volume);
+        }
+        return bounds;
     }
 
     /// A size that asks for more than a mesh can hold is told at once, not when memory ends. A limit of the user's may end the run before.

@@ -9,8 +9,10 @@
 //     The worst d is 6 (equatorial sphere): g^6 = 2^-1074 is the least positive double, so a result that falls into the
 //     subnormal range is representable and therefore exact: underflow never costs a bit, in expansions or in bounds.
 //   No overflow: no partial sum exceeds m D^d, m the sum of the absolute coefficients (orient3d 6, insphere 72, equatorial
-//     162, see formulas.hpp): 162 * 2^984 < 2^992. Splitting a factor multiplies it by 2^27 + 1, and factors of a product
-//     in the equatorial test are at most 18 D^4 < 2^661.
+//     216 with weights, see formulas.hpp): 216 * 2^984 < 2^992. Splitting a factor multiplies it by 2^27 + 1, and factors of a
+//     product in the equatorial test are at most 18 D^4 < 2^661.
+// Weights count as of degree 2: zero, or of magnitude in [kMinMagnitude^2, kMaxMagnitude^2]. They are multiples of 2^(-400 - 52), and
+// differences, at most 2^181, are multiplied by kDifferenceScale^2 = 2^146: multiples of 2^-306, hence of g^2, and at most 2^327 < D^2.
 // The window is shifted to small magnitudes on purpose: a coordinate of 1e-50 that should be zero is a common accident,
 // one of 1e28 is not. tests/unit/predicates/exact_range_test.cpp exercises both ends.
 #pragma once
@@ -31,6 +33,14 @@ inline constexpr double kDifferenceScale = 0x1p73;
     return magnitude == 0 || (magnitude >= kMinMagnitude && magnitude <= kMaxMagnitude);
 }
 [[nodiscard]] inline bool in_exact_range(const Vec3& p) { return in_exact_range(p.x) && in_exact_range(p.y) && in_exact_range(p.z); }
+
+inline constexpr double kMinWeight = kMinMagnitude * kMinMagnitude, kMaxWeight = kMaxMagnitude * kMaxMagnitude;  ///< input units squared
+
+/// False for NaN and infinities, too.
+[[nodiscard]] inline bool weight_in_exact_range(double weight) {
+    const double magnitude = std::fabs(weight);
+    return magnitude == 0 || (magnitude >= kMinWeight && magnitude <= kMaxWeight);
+}
 
 /// Computed (Steiner) coordinates can cancel to almost nothing: those below the range become zero. Moves a point by less
 /// than kMinMagnitude; does not mend coordinates that are too large.

@@ -63,23 +63,72 @@ inline double lowest_bit(double value) {
     return std::bit_cast<double>((bits & 0x7ff0000000000000) - (static_cast<std::uint64_t>(52 - zeros) << 52));
 }
 
+/// The largest power of two whose square divides `value`, which is not zero nor subnormal.
+inline double root_of_lowest_bit(double value) {
+    const int exponent = std::ilogb(lowest_bit(value));
+    return std::ldexp(1.0, exponent >= 0 ? exponent / 2 : -((1 - exponent) / 2));
+}
+
+// What the ladder does with differences of points and of weighted points.
+
+inline Triple<double> scaled_difference(const Vec3& p, const Vec3& origin) {
+    return {kDifferenceScale * (p.x - origin.x), kDifferenceScale * (p.y - origin.y), kDifferenceScale * (p.z - origin.z)};
+}
+inline Quadruple<double> scaled_difference(const WeightedPoint& p, const WeightedPoint& origin) {
+    const Triple<double> d = scaled_difference(p.point, origin.point);
+    return {d.x, d.y, d.z, kDifferenceScale * kDifferenceScale * (p.weight - origin.weight)};
+}
+
+/// What the rounding of scaled_difference loses.
+inline Triple<double> scaled_tail(const Vec3& p, const Vec3& origin) {
+    return {kDifferenceScale * two_difference(p.x, origin.x).low, kDifferenceScale * two_difference(p.y, origin.y).low,
+            kDifferenceScale * two_difference(p.z, origin.z).low};
+}
+inline Quadruple<double> scaled_tail(const WeightedPoint& p, const WeightedPoint& origin) {
+    const Triple<double> t = scaled_tail(p.point, origin.point);
+    return {t.x, t.y, t.z, kDifferenceScale * kDifferenceScale * two_difference(p.weight, origin.weight).low};
+}
+
+inline bool any_not_zero(const Triple<double>& p) { return p.x != 0 || p.y != 0 || p.z != 0; }
+inline bool any_not_zero(const Quadruple<double>& p) { return p.x != 0 || p.y != 0 || p.z != 0 || p.w != 0; }
+
+/// The largest power of two q, up to `limit`, of which the components are multiples, and the weight of q^2.
+inline double common_unit(const Triple<double>& p, double limit) {
+    for (const double component : {p.x, p.y, p.z})
+        if (component != 0) limit = std::min(limit, lowest_bit(component));
+    return limit;
+}
+inline double common_unit(const Quadruple<double>& p, double limit) {
+    limit = common_unit(Triple<double>{p.x, p.y, p.z}, limit);
+    return p.w != 0 ? std::min(limit, root_of_lowest_bit(p.w)) : limit;
+}
+
+/// Component by component from a rounded difference and what it lost.
+template <class T, class Convert>
+Triple<T> convert_components(const Triple<double>& head, const Triple<double>& tail, Convert convert) {
+    return {convert(head.x, tail.x), convert(head.y, tail.y), convert(head.z, tail.z)};
+}
+template <class T, class Convert>
+Quadruple<T> convert_components(const Quadruple<double>& head, const Quadruple<double>& tail, Convert convert) {
+    return {convert(head.x, tail.x), convert(head.y, tail.y), convert(head.z, tail.z), convert(head.w, tail.w)};
+}
+
 template <class Formula>
 class Ladder {
 public:
     static constexpr std::size_t kArguments = Formula::kArguments;
-    using Points = std::array<const Vec3*, kArguments>;
+    using Point = typename Formula::Point;
+    using Points = std::array<const Point*, kArguments>;
 
     /// The arguments are the differences points[i] - origin.
-    Ladder(const Points& points, const Vec3& origin) {
-        for (std::size_t i = 0; i < kArguments; ++i)
-            heads_[i] = {kDifferenceScale * (points[i]->x - origin.x), kDifferenceScale * (points[i]->y - origin.y),
-                         kDifferenceScale * (points[i]->z - origin.z)};
+    Ladder(const Points& points, const Point& origin) {
+        for (std::size_t i = 0; i < kArguments; ++i) heads_[i] = scaled_difference(*points[i], origin);
     }
 
     /// Error of the value over doubles: each monomial carries at most kRoundings factors (1 + delta), |delta| <= eps.
     [[nodiscard]] std::optional<Sign> forward_bound() {
         value_ = Formula::value(heads_);
-        permanent_ = Formula::value(map<Magnitude>([](double h) { return Magnitude{std::fabs(h)}; })).value;
+        permanent_ = Formula::value(convert<Magnitude>([](double head, double) { return Magnitude{std::fabs(head)}; })).value;
         const double bound = bound_of_roundings(Formula::kRoundings) * permanent_;
         if (value_ > bound) return Sign::positive;
         if (value_ < -bound) return Sign::negative;
@@ -96,22 +145,18 @@ public:
     [[nodiscard]] std::optional<Sign> exact_doubles() const {
         if (has_tails_) return std::nullopt;
         double q = kDifferenceScale * kMaxMagnitude;
-        for (const Triple<double>& h : heads_)
-            for (const double component : {h.x, h.y, h.z})
-                if (component != 0) q = std::min(q, lowest_bit(component));
+        for (const Argument<double>& head : heads_) q = common_unit(head, q);
         double limit = 0x1p52;
         for (int i = 0; i < Formula::kDegree; ++i) limit *= q;
         if (!(permanent_ < limit)) return std::nullopt;
         return value_ > 0 ? Sign::positive : value_ < 0 ? Sign::negative : Sign::zero;
     }
 
-    void find_tails(const Points& points, const Vec3& origin) {
+    void find_tails(const Points& points, const Point& origin) {
         has_tails_ = false;
         for (std::size_t i = 0; i < kArguments; ++i) {
-            tails_[i] = {kDifferenceScale * two_difference(points[i]->x, origin.x).low,
-                         kDifferenceScale * two_difference(points[i]->y, origin.y).low,
-                         kDifferenceScale * two_difference(points[i]->z, origin.z).low};
-            has_tails_ = has_tails_ || tails_[i].x != 0 || tails_[i].y != 0 || tails_[i].z != 0;
+            tails_[i] = scaled_tail(*points[i], origin);
+            has_tails_ = has_tails_ || any_not_zero(tails_[i]);
         }
     }
 
@@ -119,9 +164,7 @@ public:
     /// 9 eps^2 of it. 10 leaves room for third-order terms and for the rounding of P, both of the order of kRoundings eps.
     /// @pre forward_bound, find_tails
     [[nodiscard]] std::optional<Sign> double_double() const {
-        std::array<Triple<DoubleDouble>, kArguments> differences;
-        for (std::size_t i = 0; i < kArguments; ++i)
-            differences[i] = {{heads_[i].x, tails_[i].x}, {heads_[i].y, tails_[i].y}, {heads_[i].z, tails_[i].z}};
+        const auto differences = convert<DoubleDouble>([](double head, double tail) { return DoubleDouble{head, tail}; });
         const double value = Formula::value(differences).high;  // relative error eps, well within the bound's room
         const double bound = 10 * Formula::kRoundings * kEpsilon * kEpsilon * permanent_;
         if (value > bound) return Sign::positive;
@@ -132,23 +175,23 @@ public:
     /// The last resort. Takes up to 250 kB of stack (equatorial test, optimised build), of which little is ever touched.
     /// @pre find_tails
     [[nodiscard]] Sign exact() const {
-        if (!has_tails_) return Formula::value(map<Expansion<1>>([](double h) { return Expansion<1>(h); })).sign();
-        std::array<Triple<Expansion<2>>, kArguments> differences;
-        for (std::size_t i = 0; i < kArguments; ++i)
-            differences[i] = {Expansion<2>(TwoTerms{heads_[i].x, tails_[i].x}), Expansion<2>(TwoTerms{heads_[i].y, tails_[i].y}),
-                              Expansion<2>(TwoTerms{heads_[i].z, tails_[i].z})};
-        return Formula::value(differences).sign();
+        if (!has_tails_) return Formula::value(convert<Expansion<1>>([](double head, double) { return Expansion<1>(head); })).sign();
+        return Formula::value(convert<Expansion<2>>([](double head, double tail) { return Expansion<2>(TwoTerms{head, tail}); })).sign();
     }
 
 private:
-    template <class T, class Convert>
-    [[nodiscard]] std::array<Triple<T>, kArguments> map(Convert convert) const {
-        std::array<Triple<T>, kArguments> result;
-        for (std::size_t i = 0; i < kArguments; ++i) result[i] = {convert(heads_[i].x), convert(heads_[i].y), convert(heads_[i].z)};
+    template <class T>
+    using Argument = typename Formula::template Argument<T>;
+
+    /// @param component  of a rounded component and what it lost (which means nothing before find_tails).
+    template <class T, class Component>
+    [[nodiscard]] std::array<Argument<T>, kArguments> convert(Component component) const {
+        std::array<Argument<T>, kArguments> result;
+        for (std::size_t i = 0; i < kArguments; ++i) result[i] = convert_components<T>(heads_[i], tails_[i], component);
         return result;
     }
 
-    std::array<Triple<double>, kArguments> heads_, tails_;
+    std::array<Argument<double>, kArguments> heads_{}, tails_{};
     double value_ = 0, permanent_ = 0;
     bool has_tails_ = false;
 };
@@ -157,7 +200,7 @@ void count_exact_predicate_call() noexcept;
 
 /// The slow rungs, kept out of the callers' instruction stream.
 template <class Formula>
-[[gnu::noinline]] Decision climb_slowly(Ladder<Formula>& ladder, const typename Ladder<Formula>::Points& points, const Vec3& origin) {
+[[gnu::noinline]] Decision climb_slowly(Ladder<Formula>& ladder, const typename Ladder<Formula>::Points& points, const typename Formula::Point& origin) {
     ladder.find_tails(points, origin);
     if (const auto sign = ladder.exact_doubles()) return {*sign, Rung::exact_doubles};
     if (const auto sign = ladder.double_double()) return {*sign, Rung::double_double};
@@ -166,7 +209,7 @@ template <class Formula>
 }
 
 template <class Formula>
-Decision climb(const typename Ladder<Formula>::Points& points, const Vec3& origin) {
+Decision climb(const typename Ladder<Formula>::Points& points, const typename Formula::Point& origin) {
     Ladder<Formula> ladder(points, origin);
     if (const auto sign = ladder.forward_bound()) return {*sign, Rung::forward_bound};
     return climb_slowly(ladder, points, origin);
@@ -174,7 +217,7 @@ Decision climb(const typename Ladder<Formula>::Points& points, const Vec3& origi
 
 /// One rung alone, for tests.
 template <class Formula>
-std::optional<Sign> single_rung(Rung rung, const typename Ladder<Formula>::Points& points, const Vec3& origin) {
+std::optional<Sign> single_rung(Rung rung, const typename Ladder<Formula>::Points& points, const typename Formula::Point& origin) {
     Ladder<Formula> ladder(points, origin);
     const auto from_forward_bound = ladder.forward_bound();
     ladder.find_tails(points, origin);

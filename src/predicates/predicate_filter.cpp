@@ -2,11 +2,12 @@
 // Bounds of the static filter.
 //
 // No rounded difference exceeds the box's extents (X, Y, Z), so the permanents (ladder.hpp) are at most 6 XYZ for orient3d and
-// 4 (X^2 + Y^2 + Z^2) 6 XYZ for insphere: four lifts, four 3 x 3 permanents. As in the ladder, the error is at most
+// 4 (X^2 + Y^2 + Z^2) 6 XYZ for insphere: four lifts, four 3 x 3 permanents; with weights in an interval of length W, each lift has W more.
+// As in the ladder, the error is at most
 // bound_of_roundings(kRoundings) times that; the few roundings of the bound itself are within its slack.
 // Unlike the ladder, nothing is scaled here, so underflow counts. orient3d is safe: products of three differences are
-// multiples of 2^-756. An insphere product may lose 2^-1075, times at most three more factors of 2^91, times 72 (the sum of the
-// coefficients), at fewer than 2^7 places: below 2^(-1075 + 273 + 7 + 7) = 2^-788, which is added.
+// multiples of 2^-756. An insphere product may lose 2^-1075, times at most three more factors of 2^91 (a difference of weights counts for
+// two), times 96 (the sum of the coefficients), at fewer than 2^7 places: below 2^(-1075 + 273 + 7 + 7) = 2^-788, which is added.
 #include <cmath>
 
 #include "predicates/ladder.hpp"
@@ -19,11 +20,12 @@ thread_local std::uint64_t exact_calls = 0;
 
 }  // namespace
 
-PredicateFilter::PredicateFilter(const Vec3& box_extent) {
+PredicateFilter::PredicateFilter(const Vec3& box_extent, double weight_extent) {
     const Magnitude x{std::fabs(box_extent.x)}, y{std::fabs(box_extent.y)}, z{std::fabs(box_extent.z)};
     const double volume = (x * y * z).value, squared_diagonal = (x * x + y * y + z * z).value;
     orient3d_bound_ = bound_of_roundings(Orient3dFormula::kRoundings) * 6 * volume;
     insphere_bound_ = bound_of_roundings(InsphereFormula::kRoundings) * 24 * volume * squared_diagonal + kInsphereUnderflow;
+    power_bound_ = bound_of_roundings(PowerFormula::kRoundings) * 24 * volume * (squared_diagonal + std::fabs(weight_extent)) + kInsphereUnderflow;
 }
 
 Sign PredicateFilter::orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -34,6 +36,11 @@ Sign PredicateFilter::insphere_beyond_filter(const Vec3& a, const Vec3& b, const
 }
 Sign PredicateFilter::insphere_perturbed_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
     return wellmesh::insphere_perturbed(a, b, c, d, e);
+}
+
+Sign PredicateFilter::power_test_beyond_filter(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
+                                               const WeightedPoint& e) {
+    return wellmesh::power_test(a, b, c, d, e);
 }
 
 void count_exact_predicate_call() noexcept { ++exact_calls; }

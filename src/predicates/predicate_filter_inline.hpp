@@ -17,4 +17,12 @@ inline double PredicateFilter::insphere_value(const Vec3& a, const Vec3& b, cons
     return InsphereFormula::value<double>({rounded_difference(a, e), rounded_difference(b, e), rounded_difference(c, e), rounded_difference(d, e)});
 }
 
+inline double PredicateFilter::power_value(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
+                                           const WeightedPoint& e) {
+    const auto difference = [&](const WeightedPoint& p) {
+        return Quadruple<double>{p.point.x - e.point.x, p.point.y - e.point.y, p.point.z - e.point.z, p.weight - e.weight};
+    };
+    return PowerFormula::value<double>({difference(a), difference(b), difference(c), difference(d)});
+}
+
 }  // namespace wellmesh

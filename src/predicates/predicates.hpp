@@ -31,7 +31,8 @@ public:
     PredicateFilter() = default;  ///< bounds that never decide
     /// @param box_extent  upper minus lower corner, computed as such (rounding is monotonous, so no rounded difference of
     ///                    coordinates exceeds it), of a box that holds all points that will ever be passed.
-    explicit PredicateFilter(const Vec3& box_extent);
+    /// @param weight_extent  largest minus smallest weight that will ever be passed, computed as such.
+    explicit PredicateFilter(const Vec3& box_extent, double weight_extent = 0);
 
     [[nodiscard]] Sign orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
         const double value = orient3d_value(a, b, c, d);
@@ -62,6 +63,14 @@ public:
             return Sign::negative;
         return insphere_perturbed_beyond_filter(a, b, c, d, e);
     }
+    [[nodiscard]] Sign power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
+                                  const WeightedPoint& e) const {
+        const double value = power_value(a, b, c, d, e);
+        if (value > power_bound_) return Sign::positive;
+        if (value < -power_bound_) [[likely]]
+            return Sign::negative;
+        return power_test_beyond_filter(a, b, c, d, e);
+    }
     [[nodiscard]] Sign side_of_diametral_sphere(const Vec3& a, const Vec3& b, const Vec3& p) const {
         return wellmesh::side_of_diametral_sphere(a, b, p);
     }
@@ -71,18 +80,25 @@ public:
 
     [[nodiscard]] double orient3d_bound() const { return orient3d_bound_; }  ///< for tests
     [[nodiscard]] double insphere_bound() const { return insphere_bound_; }  ///< for tests
+    [[nodiscard]] double power_bound() const { return power_bound_; }        ///< for tests
 
     /// The rounded determinants that the bounds are for.
     [[nodiscard]] static double orient3d_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
     [[nodiscard]] static double insphere_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+    [[nodiscard]] static double power_value(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
+                                            const WeightedPoint& e);
 
 private:
     static Sign orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
     static Sign insphere_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
     static Sign insphere_perturbed_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
 
+    static Sign power_test_beyond_filter(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
+                                         const WeightedPoint& e);
+
     double orient3d_bound_ = std::numeric_limits<double>::infinity();
     double insphere_bound_ = std::numeric_limits<double>::infinity();
+    double power_bound_ = std::numeric_limits<double>::infinity();
     bool has_lanes_ = has_insphere_lanes();
 };
 

@@ -103,7 +103,7 @@ SliverOutcome remove_slivers(ConformingMesh& mesh, BoundaryRefiner& boundary, Re
     switch (options.slivers) {
         case SliverStrategy::none:
         case SliverStrategy::chew:   // refinement has made none where it could
-        case SliverStrategy::exude: break;
+        case SliverStrategy::exude: break;  // the finished mesh gets weights (exudation/)
         case SliverStrategy::refine: return refine_slivers(mesh, refiner, options);
         case SliverStrategy::improve: return improve_locally(mesh, boundary, refiner, guard, options);
         case SliverStrategy::perturb:

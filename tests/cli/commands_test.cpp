@@ -305,6 +305,36 @@ TEST(check_command, damage_is_refuted_with_a_witness) {
     EXPECT_EQ(run_wellmesh({"check", scratch.file("good.mesh"), "--min-dihedral", "60"}).status, 1);
 }
 
+/// A weighted mesh says so everywhere, and is checked from its files with its weights only.
+TEST(check_command, weighted_meshes_are_checked_with_their_weights) {
+    const ScratchFolder scratch;
+    const std::string cube = scratch.write("cube.off", kCubeOff);
+    const Outcome run = run_wellmesh({"mesh", cube, "--size", "0.2", "--slivers", "exude", "--min-dihedral", "5", "--json", scratch.file("m.json"),
+                                      "-o", scratch.file("a.mesh"), "-o", scratch.file("b.node"), "-o", scratch.file("c.vtu")});
+    ASSERT_EQ(run.status, 0) << run.out << run.err;
+    EXPECT_TRUE(contains(run.out, "the mesh is weighted Delaunay")) << run.out;
+    EXPECT_TRUE(contains(run.out, "weighted_delaunay")) << run.out;
+    const json made = json::parse(read_text(scratch.file("m.json")));
+    EXPECT_EQ(made.at("options").at("slivers"), "exude");
+    EXPECT_GT(made.at("statistics").at("weighted_vertices"), 0);
+    for (const json& claim : made.at("certificate").at("claims")) EXPECT_NE(claim.at("name"), "delaunay");
+    EXPECT_TRUE(contains(read_text(scratch.file("c.vtu")), "Name=\"weight\""));
+    for (const auto& [mesh, weights] : {std::pair{"a.mesh", "a.weights.sol"}, {"b.node", "b.node"}, {"a.mesh", "b.node"}}) {
+        const Outcome check = run_wellmesh({"check", scratch.file(mesh), "--plc", cube, "--weights", scratch.file(weights), "--min-dihedral", "5", "--json",
+                                            scratch.file("r.json")});
+        EXPECT_EQ(check.status, 0) << check.out;
+        EXPECT_EQ(json::parse(read_text(scratch.file("r.json"))).at("weights"), scratch.file(weights));
+        const Outcome without = run_wellmesh({"check", scratch.file(mesh), "--plc", cube});
+        EXPECT_EQ(without.status, 1);
+        EXPECT_TRUE(contains(without.out, "REFUTED")) << without.out;
+    }
+    EXPECT_EQ(run_wellmesh({"check", scratch.file("a.mesh"), "--weights", scratch.file("none.sol")}).status, 5);
+    const std::string bad = scratch.write("w.sol", "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n1\n1 1\nno\n");
+    const Outcome wrong = run_wellmesh({"check", scratch.file("a.mesh"), "--weights", bad});
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_TRUE(contains(wrong.err, "w.sol:6")) << wrong.err;
+}
+
 TEST(check_command, what_is_no_mesh_is_bad_input) {
     const ScratchFolder scratch;
     EXPECT_EQ(run_wellmesh({"check", scratch.write("a.mesh", "")}).status, 2);

@@ -89,7 +89,7 @@ TEST(usage, values_out_of_range_are_refused_with_the_range) {
         {{"--seed", "-1"}, "whole number"}, {{"--seed", "18446744073709551616"}, "whole number"}, {{"--seed", ""}, "whole number"},
         {{"--time-limit", "0"}, "seconds"}, {{"--time-limit", "-1"}, "seconds"}, {{"--time-limit", "nan"}, "seconds"}, {{"--time-limit", "1e300"}, "seconds"},
         {{"--msh-version", "40"}, "41 or 22"},
-        {{"--slivers", "exuded"}, "one of none refine improve chew exude perturb best, not 'exuded'"}, {{"--slivers", "exude"}, "not be exude yet"},
+        {{"--slivers", "exuded"}, "one of none refine improve chew exude perturb best, not 'exuded'"},
         {{"--slivers", "chew"}, "needs a size"}, {{"--min-dihedral-boundary", "5"}, "refine and improve"}, {{"--sigma0-boundary", "0.01"}, "refine and improve"},
         {{"--mode", "proven"}, "practical or certified"}, {{"--delta", "1"}, "above 0 and below 1"}, {{"--delta", "nan"}, "above 0 and below 1"},
         {{"--b", "4.5"}, "belongs to certified mode"}, {{"--sigma0", "0.01"}, "belongs to certified mode"}, {{"--rho0", "inf"}, "0.6124"},

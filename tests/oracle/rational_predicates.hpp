@@ -123,4 +123,73 @@ inline Sign side_of_equatorial_sphere(const Vec3& a, const Vec3& b, const Vec3& 
     return sign_of(dot(s, s) - dot(from_centre, from_centre));
 }
 
+// ---- weighted points: coordinates and weights times one power of two and its square
+
+template <std::size_t N>
+struct WeightedIntegers {
+    std::array<Point, N> point;
+    std::array<Integer, N> weight;
+    [[nodiscard]] Integer lift(std::size_t i) const { return dot(point[i], point[i]) - weight[i]; }
+};
+
+/// @pre finite.
+template <std::size_t N>
+WeightedIntegers<N> to_integers(const std::array<WeightedPoint, N>& points) {
+    int least = std::numeric_limits<int>::max();
+    for (const WeightedPoint& p : points) {
+        for (const double c : {p.point.x, p.point.y, p.point.z})
+            if (c != 0) least = std::min(least, std::ilogb(c) - 52);
+        if (p.weight != 0) least = std::min(least, (std::ilogb(p.weight) - 53) / 2 - 1);
+    }
+    const auto convert = [&](double c, int unit) -> Integer {
+        if (c == 0) return 0;
+        const int exponent = std::ilogb(c) - 52;
+        return Integer(static_cast<std::int64_t>(std::ldexp(c, -exponent))) << (exponent - unit);
+    };
+    WeightedIntegers<N> result;
+    for (std::size_t i = 0; i < N; ++i) {
+        const Vec3& p = points[i].point;
+        result.point[i] = {convert(p.x, least), convert(p.y, least), convert(p.z, least)};
+        result.weight[i] = convert(points[i].weight, 2 * least);
+    }
+    return result;
+}
+
+/// The definition by lifting, see insphere_of_lifts.
+inline Sign power_test(const std::array<WeightedPoint, 5>& points) {
+    const auto q = to_integers(points);
+    Integer sum = 0;
+    for (std::size_t i = 0; i < 5; ++i) {
+        std::array<std::size_t, 4> others{};
+        for (std::size_t j = 0, n = 0; j < 5; ++j)
+            if (j != i) others[n++] = j;
+        const Integer cofactor = det(q.point[others[1]] - q.point[others[0]], q.point[others[2]] - q.point[others[0]], q.point[others[3]] - q.point[others[0]]);
+        sum += (i % 2 == 0 ? q.lift(i) : Integer(-q.lift(i))) * cofactor;
+    }
+    return -sign_of(sum);
+}
+
+/// The sphere of radius r about c = a + t (b - a) is orthogonal to a and b iff |c - a|^2 - w_a = |c - b|^2 - w_b = r^2; with t = n / m, all times m^2.
+inline Sign diametral_power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& p) {
+    const auto q = to_integers<3>({a, b, p});
+    const Point u = q.point[1] - q.point[0], v = q.point[2] - q.point[0];
+    const Integer m = 2 * dot(u, u), n = dot(u, u) - q.weight[1] + q.weight[0];
+    const Point to_p{m * v.x - n * u.x, m * v.y - n * u.y, m * v.z - n * u.z};  // m (p - c)
+    const Integer radius = n * n * dot(u, u) - m * m * q.weight[0];             // m^2 r^2
+    return sign_of(m * m * q.weight[2] - (dot(to_p, to_p) - radius));
+}
+
+/// Centre a + s u + t v with s = i / m, t = j / m by Cramer's rule from 2 (c - a).u = |u|^2 - w_b + w_a, and so for v.
+inline Sign equatorial_power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& p) {
+    const auto q = to_integers<4>({a, b, c, p});
+    const Point u = q.point[1] - q.point[0], v = q.point[2] - q.point[0], w = q.point[3] - q.point[0];
+    const Integer uu = dot(u, u), vv = dot(v, v), uv = dot(u, v);
+    const Integer f = uu - q.weight[1] + q.weight[0], g = vv - q.weight[2] + q.weight[0];
+    const Integer m = 2 * (uu * vv - uv * uv), i = f * vv - g * uv, j = g * uu - f * uv;
+    const Point centre{i * u.x + j * v.x, i * u.y + j * v.y, i * u.z + j * v.z};  // m (c - a)
+    const Point to_p{m * w.x - centre.x, m * w.y - centre.y, m * w.z - centre.z};
+    const Integer radius = dot(centre, centre) - m * m * q.weight[0];
+    return sign_of(m * m * q.weight[3] - (dot(to_p, to_p) - radius));
+}
+
 }  // namespace wellmesh::oracle

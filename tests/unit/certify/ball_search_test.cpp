@@ -45,7 +45,7 @@ TEST(BallSearch, FindsEveryVertexInACircumball) {
             std::set<std::uint32_t> expected, visited;
             for (std::uint32_t q = 0; q < points.size(); ++q)
                 if (insphere(p[0], p[1], p[2], p[3], points[q]) == Sign::positive) expected.insert(q);
-            search.any_in(search.circumball(p[0], p[1], p[2], p[3]), [&](std::uint32_t q) {
+            search.any_in(search.circumball({p[0]}, {p[1]}, {p[2]}, {p[3]}), [&](std::uint32_t q) {
                 visited.insert(q);
                 return false;
             });
@@ -65,7 +65,7 @@ TEST(BallSearch, FindsEveryVertexInEquatorialAndDiametralBalls) {
         for (std::uint64_t key = 0; key < 400; ++key) {
             const Vec3 &a = points[mix64(key, 10) % points.size()], &b = points[mix64(key, 11) % points.size()], &c = points[mix64(key, 12) % points.size()];
             if (a == b) continue;
-            const Ball ball = search.equatorial_ball(a, b, c), segment = search.diametral_ball(a, b);
+            const Ball ball = search.equatorial_ball({a}, {b}, {c}), segment = search.diametral_ball({a}, {b});
             std::set<std::uint32_t> in_ball, in_segment;
             search.any_in(segment, [&](std::uint32_t q) { return in_segment.insert(q), false; });
             if (squared_norm(cross(b - a, c - a)) > 0) search.any_in(ball, [&](std::uint32_t q) { return in_ball.insert(q), false; });
@@ -84,6 +84,42 @@ TEST(BallSearch, FindsEveryVertexInEquatorialAndDiametralBalls) {
         }
     }
     EXPECT_GT(inside_total, 10000U);
+}
+
+/// With weights up to the square of the points' spread, or far below it, or negative: nothing in conflict is pruned, and depth has its sign.
+TEST(BallSearch, FindsEveryVertexInConflict) {
+    std::uint64_t in_conflict = 0, visits = 0, cases = 0;
+    for (const auto& points : point_sets())
+        for (const double scale : {0.1, 1e-3, -0.5}) {
+            const double spread = squared_distance(points[0], points[1]);
+            std::vector<double> weights;
+            for (std::uint64_t v = 0; v < points.size(); ++v) weights.push_back(v % 3 == 0 ? 0 : scale * spread * unit_double(mix64(v, 31)));
+            const BallSearch search(points, weights);
+            const auto at = [&](std::size_t v) { return WeightedPoint{points[v], weights[v]}; };
+            for (std::uint64_t key = 0; key < 100; ++key) {
+                std::array<WeightedPoint, 4> p;
+                for (std::uint64_t k = 0; k < 4; ++k) p[k] = at(mix64(key, k) % points.size());
+                if (orient3d(p[0].point, p[1].point, p[2].point, p[3].point) == Sign::negative) std::swap(p[0], p[1]);
+                if (orient3d(p[0].point, p[1].point, p[2].point, p[3].point) != Sign::positive) continue;
+                const auto look = [&](const Ball& ball, auto&& test) {
+                    std::set<std::uint32_t> visited;
+                    search.any_in(ball, [&](std::uint32_t q) { return visited.insert(q), false; });
+                    visits += visited.size();
+                    ++cases;
+                    for (std::uint32_t q = 0; q < points.size(); ++q) {
+                        if (test(at(q)) != Sign::positive) continue;
+                        ++in_conflict;
+                        ASSERT_TRUE(visited.contains(q)) << key;
+                        EXPECT_GT(search.depth(ball, q), -1e-8);
+                    }
+                };
+                look(search.circumball(p[0], p[1], p[2], p[3]), [&](const WeightedPoint& q) { return power_test(p[0], p[1], p[2], p[3], q); });
+                look(search.equatorial_ball(p[0], p[1], p[2]), [&](const WeightedPoint& q) { return equatorial_power_test(p[0], p[1], p[2], q); });
+                look(search.diametral_ball(p[0], p[1]), [&](const WeightedPoint& q) { return diametral_power_test(p[0], p[1], q); });
+            }
+        }
+    EXPECT_GT(in_conflict, 10000U);
+    EXPECT_LT(visits, cases * 200) << "the search does not prune";
 }
 
 TEST(BallSearch, StopsWhenToldTo) {
