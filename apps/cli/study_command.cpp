@@ -94,16 +94,16 @@ MeshOptions Study::options_of(SliverStrategy strategy, double theta) const {
 
 /// What is wrong with the arguments is said before the first run, not after hours.
 void Study::check_options() const {
+    std::vector<std::optional<double>> sizes(arguments_.sizes.begin(), arguments_.sizes.end());
+    sizes.insert(sizes.end(), arguments_.relative_sizes.begin(), arguments_.relative_sizes.end());  // as if the diagonal were 1
+    if (sizes.empty()) sizes.emplace_back();
     for (const SliverStrategy strategy : arguments_.strategies)
-        for (const double theta : arguments_.theta) {
-            MeshOptions options = options_of(strategy, theta);
-            require_valid(options);
-            for (const auto* sizes : {&arguments_.sizes, &arguments_.relative_sizes})
-                for (const double size : *sizes) {
-                    options.size.edge_length = size;
-                    require_valid(options);
-                }
-        }
+        for (const double theta : arguments_.theta)
+            for (const auto& size : sizes) {
+                MeshOptions options = options_of(strategy, theta);
+                options.size.edge_length = size;
+                require_valid(options);
+            }
 }
 
 std::size_t Study::runs() const {

@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -186,6 +187,21 @@ TEST(study_command, bad_lists_are_refused_with_the_form) {
     }
     EXPECT_EQ(run_wellmesh({"study", cube}).status, 3);
     EXPECT_EQ(scratch.listing(), Names{"cube.off"});
+}
+
+TEST(study_command, published_ways_are_rows_like_any_other) {
+    const ScratchFolder scratch;
+    const std::string cube = scratch.write("cube.off", kCubeOff);
+    // chew needs a size, which is said at once where none is given.
+    EXPECT_EQ(run_wellmesh({"study", cube, "--strategies", "chew", "-o", scratch.file("none")}).status, 3);
+    const Outcome run = run_wellmesh({"study", cube, "--strategies", "refine,improve,chew,perturb", "--theta", "10", "--seeds", "1", "--size-over-diagonal", "0.25", "-o", scratch.file("out")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Table table = read_csv(read_text(scratch.file("out/study.csv")));
+    ASSERT_EQ(table.size(), 4U);
+    for (const auto& row : table) {
+        EXPECT_NE(row.at("almost_good_vertices"), "");
+        EXPECT_NEAR(std::stod(row.at("size")), 0.25 * std::sqrt(3.0), 1e-12);
+    }
 }
 
 TEST(study_command, lists_and_ranges_mix) {
