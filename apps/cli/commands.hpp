@@ -18,6 +18,8 @@ namespace wellmesh::cli {
 using Command = std::function<int(Interrupt&)>;
 
 void add_mesh_command(CLI::App& program, Command& selected);
+void add_improve_command(CLI::App& program, Command& selected);
+void add_study_command(CLI::App& program, Command& selected);
 void add_check_command(CLI::App& program, Command& selected);
 void add_quality_command(CLI::App& program, Command& selected);
 void add_doctor_command(CLI::App& program, Command& selected);

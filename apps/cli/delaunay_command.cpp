@@ -25,7 +25,7 @@ struct DelaunayCommand {
 
 int run(const DelaunayCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.write);
-    require_mesh_outputs(arguments.outputs, arguments.points);
+    require_mesh_outputs(arguments.outputs, {arguments.points});
     std::vector<std::string> others = arguments.outputs;
     others.push_back(arguments.points);
     require_report(arguments.json, others);

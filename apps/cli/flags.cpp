@@ -89,11 +89,6 @@ std::string strategy_names(const char* separator) {
     return fmt::format("{}", fmt::join(names, separator));
 }
 
-SliverStrategy read_strategy(const std::string& text) {
-    if (const auto strategy = parse_sliver_strategy(text)) return *strategy;
-    throw CLI::ValidationError("--slivers", fmt::format("must be one of {}, not '{}'", strategy_names(" "), text));
-}
-
 /// The paper's constants, and the mode, which has its own defaults for two goals (they hold where the goal is not given).
 void add_paper_flags(CLI::App& command, MeshOptions& options, const CLI::Option* ratio, const CLI::Option* angle) {
     command.add_option_function<std::string>(
@@ -123,40 +118,36 @@ void add_paper_flags(CLI::App& command, MeshOptions& options, const CLI::Option*
 
 }  // namespace
 
+SliverStrategy read_strategy(const std::string& text, const std::string& flag) {
+    if (const auto strategy = parse_sliver_strategy(text)) return *strategy;
+    throw CLI::ValidationError(flag, fmt::format("must be one of {}, not '{}'", strategy_names(" "), text));
+}
+
 void add_coplanar_tolerance_flag(CLI::App& command, MeshOptions& options) {
     command.add_option("--coplanar-tolerance", options.coplanar_tolerance,
                        "merge and accept facets whose vertices leave their plane by at most this, in input units (default: from the rounding of the input)")
         ->type_name("D");
 }
 
-void add_mesh_flags(CLI::App& command, MeshOptions& options) {
+GoalFlags add_goal_flags(CLI::App& command, MeshOptions& options) {
     command.add_option("--size", options.size.edge_length, "target edge length, in input units (default: none)")->type_name("H");
     command.add_option("--max-volume", options.size.max_volume, "bound on the volume of every tetrahedron (default: none)")->type_name("V");
     const CLI::Option* ratio = command.add_option("--max-radius-edge", options.quality.max_radius_edge_ratio, "bound on circumradius / shortest edge of every tetrahedron")
         ->type_name("RATIO")->capture_default_str();
     const CLI::Option* angle = command.add_option("--min-dihedral", options.quality.min_dihedral_angle_deg, "least dihedral angle, in degrees; 0 ignores slivers")
         ->type_name("DEG")->capture_default_str();
-    command.add_option("--min-dihedral-boundary", options.quality.min_dihedral_boundary_deg,
-                       "--slivers refine, improve: --min-dihedral of tetrahedra that touch the boundary (default: the same)")
-        ->type_name("DEG");
-    command.add_option_function<std::string>(
-        "--slivers", [&options](const std::string& text) { options.slivers = read_strategy(text); },
-        "how slivers are removed: none (they stay; --min-dihedral defaults to 0 then), a published way, or best (docs/strategies.md)")
-        ->type_name(strategy_names("|"))->default_str(to_string(options.slivers));
-    command.add_option_function<std::string>(
-        "--seeding",
-        [&options](const std::string& text) {
-            if (text != "auto" && text != "off") throw CLI::ValidationError("--seeding", fmt::format("'{}' is neither auto nor off", text));
-            options.seeding = text == "auto" ? Seeding::automatic : Seeding::off;
-        },
-        "start from a lattice inside, where a size is asked for: fewer vertices for the same size")
-        ->type_name("auto|off")->default_str("auto");
-    add_paper_flags(command, options, ratio, angle);
-    add_coplanar_tolerance_flag(command, options);
+    return {ratio, angle};
+}
+
+void add_seed_flag(CLI::App& command, MeshOptions& options) {
     command.add_option_function<std::string>(
         "--seed", [&options](const std::string& text) { options.seed = read_count(text, "--seed"); },
         "seed of the pseudo-random choices; input, options and seed fix the output")
         ->type_name("N")->default_str(fmt::format("{}", options.seed));
+}
+
+void add_limit_flags(CLI::App& command, MeshOptions& options) {
+    add_coplanar_tolerance_flag(command, options);
     command.add_option_function<std::string>(
         "--max-vertices", [&options](const std::string& text) { options.limits.max_vertices = read_count(text, "--max-vertices"); },
         "stop at this many vertices, input included (default: none)")
@@ -165,6 +156,32 @@ void add_mesh_flags(CLI::App& command, MeshOptions& options) {
         "--time-limit", [&options](const std::string& text) { options.limits.time = read_seconds(text, "--time-limit"); },
         "stop refining after this many seconds; the certificate and writing come on top (default: none)")
         ->type_name("SECONDS");
+}
+
+void add_seeding_flag(CLI::App& command, MeshOptions& options) {
+    command.add_option_function<std::string>(
+        "--seeding",
+        [&options](const std::string& text) {
+            if (text != "auto" && text != "off") throw CLI::ValidationError("--seeding", fmt::format("'{}' is neither auto nor off", text));
+            options.seeding = text == "auto" ? Seeding::automatic : Seeding::off;
+        },
+        "start from a lattice inside, where a size is asked for: fewer vertices for the same size")
+        ->type_name("auto|off")->default_str("auto");
+}
+
+void add_mesh_flags(CLI::App& command, MeshOptions& options) {
+    const GoalFlags goals = add_goal_flags(command, options);
+    command.add_option("--min-dihedral-boundary", options.quality.min_dihedral_boundary_deg,
+                       "--slivers refine, improve: --min-dihedral of tetrahedra that touch the boundary (default: the same)")
+        ->type_name("DEG");
+    command.add_option_function<std::string>(
+        "--slivers", [&options](const std::string& text) { options.slivers = read_strategy(text, "--slivers"); },
+        "how slivers are removed: none (they stay; --min-dihedral defaults to 0 then), a published way, or best (docs/strategies.md)")
+        ->type_name(strategy_names("|"))->default_str(to_string(options.slivers));
+    add_seeding_flag(command, options);
+    add_paper_flags(command, options, goals.radius_edge, goals.dihedral);
+    add_seed_flag(command, options);
+    add_limit_flags(command, options);
 }
 
 void add_write_flags(CLI::App& command, WriteOptions& options) {
@@ -222,14 +239,15 @@ void require_valid(const CertifyOptions& options) {
     if (!problems.empty()) bad_options(problems);
 }
 
-void require_mesh_outputs(const std::vector<std::string>& outputs, const std::string& input) {
+void require_mesh_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
     std::vector<std::string> problems;
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const std::string& output = outputs[i];
         const std::string extension = lower_extension(output);
         if (std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) == kMeshExtensions.end())
             problems.push_back(fmt::format("{}: unknown mesh format '{}'; known are {}", output, extension, fmt::join(kMeshExtensions, " ")));
-        if (share_a_file(output, input)) problems.push_back(fmt::format("{}: writing it would replace the input {}", output, input));
+        for (const std::string& input : inputs)
+            if (share_a_file(output, input)) problems.push_back(fmt::format("{}: writing it would replace the input {}", output, input));
         const bool twice = std::any_of(outputs.begin(), outputs.begin() + static_cast<std::ptrdiff_t>(i), [&](const std::string& o) { return share_a_file(o, output); });
         if (twice) problems.push_back(fmt::format("{}: named twice", output));
     }

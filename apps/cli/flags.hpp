@@ -11,16 +11,30 @@
 
 namespace CLI {
 class App;
+class Option;
 }
 
 namespace wellmesh::cli {
 
+struct GoalFlags {
+    const CLI::Option *radius_edge = nullptr, *dihedral = nullptr;
+};
+/// Size and shape.
+GoalFlags add_goal_flags(CLI::App& command, MeshOptions& options);
+void add_seed_flag(CLI::App& command, MeshOptions& options);
+void add_seeding_flag(CLI::App& command, MeshOptions& options);
+/// Coplanar tolerance, time and vertices.
+void add_limit_flags(CLI::App& command, MeshOptions& options);
+/// All of these, and what concerns meshes made from scratch.
 void add_mesh_flags(CLI::App& command, MeshOptions& options);
 void add_coplanar_tolerance_flag(CLI::App& command, MeshOptions& options);
 void add_write_flags(CLI::App& command, WriteOptions& options);
 void add_certify_flags(CLI::App& command, CertifyOptions& options);
 void add_json_flag(CLI::App& command, std::string& path);
 void add_output_flag(CLI::App& command, std::vector<std::string>& paths, const std::string& what);
+
+/// @throws CLI::ValidationError{flag} that names the strategies.
+[[nodiscard]] SliverStrategy read_strategy(const std::string& text, const std::string& flag);
 
 /// @throws MeshError{bad_options} that lists every value out of its range.
 void require_valid(const MeshOptions& options);
@@ -29,7 +43,7 @@ void require_valid(const WriteOptions& options);
 
 /// @throws MeshError{bad_options} for an unknown extension, a file named twice, or one that would replace an input file;
 ///         MeshError{cannot_write} for what can be known to fail.
-void require_mesh_outputs(const std::vector<std::string>& outputs, const std::string& input);
+void require_mesh_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
 /// @throws MeshError{bad_options} if the report `json` would replace one of `others`, MeshError{cannot_write} for what can be known
 ///         to fail. An empty name is no report.

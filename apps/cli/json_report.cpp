@@ -154,8 +154,24 @@ Json to_json(const InvariantReport& report) {
     return json;
 }
 
+Json to_json(const GivenMeshStatistics& given) {
+    Json json;
+    json["vertices"] = given.vertices;
+    json["tets"] = given.tets;
+    json["delaunay_tets"] = given.delaunay_tets;
+    json["tolerance"] = given.tolerance;
+    json["farthest_vertex"] = given.farthest_vertex;
+    json["moved_onto_input"] = given.moved_onto_input;
+    json["dropped_vertices"] = given.dropped_vertices;
+    json["added_input_vertices"] = given.added_input_vertices;
+    json["added_for_conformity"] = given.added_for_conformity;
+    json["added_for_refinement"] = given.added_for_refinement;
+    return json;
+}
+
 Json to_json(const MeshStatistics& statistics) {
     Json json;
+    if (statistics.given) json["given_mesh"] = to_json(*statistics.given);
     json["input_vertices"] = statistics.input_vertices;
     json["segment_vertices"] = statistics.segment_vertices;
     json["facet_vertices"] = statistics.facet_vertices;

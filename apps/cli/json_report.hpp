@@ -25,6 +25,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json to_json(const Certificate& certificate);
 [[nodiscard]] Json to_json(const ShapeStatistics& statistics);
 [[nodiscard]] Json to_json(const InvariantReport& report);
+[[nodiscard]] Json to_json(const GivenMeshStatistics& given);
 [[nodiscard]] Json to_json(const MeshStatistics& statistics);
 [[nodiscard]] Json to_json(const std::vector<StageTime>& stages);
 [[nodiscard]] Json to_json(const Diagnosis& diagnosis);

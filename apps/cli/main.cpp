@@ -77,7 +77,8 @@ int run(int argc, char** argv) {
     program.require_subcommand(1);
     program.failure_message(CLI::FailureMessage::simple);
     Command selected;
-    for (const auto add : {add_mesh_command, add_check_command, add_quality_command, add_doctor_command, add_delaunay_command, add_example_command})
+    for (const auto add : {add_mesh_command, add_improve_command, add_study_command, add_check_command, add_quality_command, add_doctor_command, add_delaunay_command,
+                           add_example_command})
         add(program, selected);
     program.footer(exit_status_footer());
     for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) command->footer(exit_status_footer());

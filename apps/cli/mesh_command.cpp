@@ -1,157 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellmesh mesh: a polyhedral domain in, a certified mesh out.
-#include <fmt/format.h>
-#include <sys/resource.h>
-
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <algorithm>
 #include <memory>
 
 #include "commands.hpp"
-#include "exit_status.hpp"
 #include "flags.hpp"
-#include "json_report.hpp"
-#include "progress_line.hpp"
-#include "render_report.hpp"
+#include "produce_mesh.hpp"
 #include "wellmesh/generate.hpp"
 #include "wellmesh/io.hpp"
 
 namespace wellmesh::cli {
 
-namespace {
-
-struct MeshCommand {
-    std::string input;
-    std::vector<std::string> outputs;
-    std::string json;
-    bool quiet = false;
-    MeshOptions options;
-    WriteOptions write;
-};
-
-std::uint64_t peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
-}
-
-MeshResult generate_with_progress(const Plc& plc, const MeshCommand& arguments, Interrupt& interrupt) {
-    ProgressLine line(!arguments.quiet);
-    RunControl control;
-    control.stop = interrupt.token();
-    if (line.enabled()) control.on_progress = [&line](const Progress& progress) { line.show(progress); };
-    return generate(plc, arguments.options, control);
-}
-
-bool goals_met(const MeshResult& result) {
-    return result.termination == Termination::goals_met && result.certificate.proven() &&
-           std::all_of(result.goals.begin(), result.goals.end(), [](const AskedAchieved& goal) { return goal.met; });
-}
-
-std::string render(const MeshResult& result, const std::vector<StageTime>& stages, const std::vector<std::filesystem::path>& files) {
-    std::string text = fmt::format("{} vertices, {} tetrahedra: {}\n\n", result.mesh.vertices.size(), result.mesh.tets.size(),
-                                   to_string(result.termination));
-    for (const std::string& part : {render_goals(result.goals), render_claims(result.certificate),
-                                    result.invariants ? render_invariants(*result.invariants) : std::string(), render_shape(result.certificate),
-                                    render_regions(result.certificate), render_stages(stages)})
-        if (!part.empty()) text += part + '\n';
-    // Whoever checks the file against its input must allow what the input's own rounding did.
-    const CertifyOptions defaults;
-    const MeshStatistics& s = result.statistics;
-    if (s.certificate_tolerance > defaults.tolerance || s.certificate_flat_angle_rad > defaults.flat_angle_rad)
-        text += fmt::format("note: the input's rounding shows in the mesh: check it with --tolerance {:.4g} --flat-angle {:.4g}\n", s.certificate_tolerance, s.certificate_flat_angle_rad);
-    if (s.weighted_vertices > 0)
-        text += fmt::format("note: the mesh is weighted Delaunay: {} of {} vertices have a weight; check it with --weights\n", s.weighted_vertices,
-                            result.mesh.vertices.size());
-    for (const std::string& note : result.statistics.notes) text += "note: " + note + '\n';
-    for (const auto& file : files) text += "wrote " + file.string() + '\n';
-    return text;
-}
-
-Json report(const MeshCommand& arguments, const MeshResult& result, const std::vector<StageTime>& stages,
-            const std::vector<std::filesystem::path>& files, int status) {
-    Json json = json_header("mesh", arguments.input);
-    json["options"] = to_json(arguments.options);
-    json["exit_status"] = status;
-    json["termination"] = to_string(result.termination);
-    json["vertices"] = result.mesh.vertices.size();
-    json["tets"] = result.mesh.tets.size();
-    json["goals"] = to_json(result.goals);
-    json["certificate"] = to_json(result.certificate);
-    if (result.invariants) json["invariants"] = to_json(*result.invariants);
-    json["statistics"] = to_json(result.statistics);
-    json["timings"] = to_json(stages);
-    json["peak_memory_bytes"] = peak_memory_bytes();
-    json["files"] = Json::array();
-    for (const auto& file : files) json["files"].push_back(file.string());
-    return json;
-}
-
-int mesh(const MeshCommand& arguments, Interrupt& interrupt) {
-    std::vector<StageTime> stages(1);
-    const Stopwatch reading;
-    const Plc plc = read_plc(arguments.input);
-    stages[0] = {.stage = Stage::read, .seconds = reading.seconds()};
-
-    const Interrupt::Cooperative cooperative(interrupt);
-    const MeshResult result = generate_with_progress(plc, arguments, interrupt);
-    if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, "interrupted; nothing written");
-    stages.insert(stages.end(), result.statistics.stages.begin(), result.statistics.stages.end());
-
-    const Stopwatch writing;
-    std::vector<std::filesystem::path> files;
-    WriteOptions write = arguments.write;
-    write.stop = interrupt.token();
-    for (const std::string& output : arguments.outputs) {
-        if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, fmt::format("interrupted before {} was written", output));
-        const auto written = write_mesh(result.mesh, output, write);
-        files.insert(files.end(), written.begin(), written.end());
-    }
-    if (!files.empty()) stages.push_back({.stage = Stage::write, .seconds = writing.seconds()});
-
-    const int status = goals_met(result) ? kGoalsMet : kGoalsUnmet;
-    if (!arguments.json.empty()) write_json(arguments.json, report(arguments, result, stages, files, status));
-    if (!arguments.quiet) print_report(render(result, stages, files), arguments.json);
-    return status;
-}
-
-int run(const MeshCommand& arguments, Interrupt& interrupt) {
-    require_valid(arguments.options);
-    require_valid(arguments.write);
-    require_mesh_outputs(arguments.outputs, arguments.input);
-    std::vector<std::string> others = arguments.outputs;
-    others.push_back(arguments.input);
-    require_report(arguments.json, others);
-    try {
-        return mesh(arguments, interrupt);
-    } catch (const MeshError& error) {
-        // Programs that asked for a report get the reason in it, too.
-        if (!arguments.json.empty() && error.code() != ErrorCode::cannot_write && error.code() != ErrorCode::cancelled) {
-            Json json = json_header("mesh", arguments.input);
-            json["options"] = to_json(arguments.options);
-            json["exit_status"] = exit_status(error.code());
-            json["error"] = to_json(error);
-            json["files"] = Json::array();
-            write_json(arguments.json, json);
-        }
-        throw;
-    }
-}
-
-}  // namespace
-
 void add_mesh_command(CLI::App& program, Command& selected) {
     CLI::App& command = *program.add_subcommand("mesh", "fill a polyhedral domain with a certified Delaunay mesh");
-    auto arguments = std::make_shared<MeshCommand>();
-    command.add_option("INPUT", arguments->input, "domain: .poly .smesh .off .stl .obj .ply .mesh")->required()->type_name("");
-    add_output_flag(command, arguments->outputs, "mesh to write: .mesh .vtu .msh .node/.ele, by extension; may be given several times");
-    add_mesh_flags(command, arguments->options);
-    add_write_flags(command, arguments->write);
-    add_json_flag(command, arguments->json);
-    command.add_flag("--quiet", arguments->quiet, "no report and no progress line; errors still go to standard error");
-    command.callback([&selected, arguments] { selected = [arguments](Interrupt& interrupt) { return run(*arguments, interrupt); }; });
+    const auto job = std::make_shared<MeshJob>();
+    job->command = "mesh";
+    job->inputs.resize(1);
+    command.add_option("INPUT", job->inputs[0], "domain: .poly .smesh .off .stl .obj .ply .mesh")->required()->type_name("");
+    add_mesh_flags(command, job->options);
+    add_job_flags(command, *job);
+    command.callback([&selected, job] {
+        selected = [job](Interrupt& interrupt) {
+            Plc plc;
+            return produce_mesh(*job, interrupt, [&] { plc = read_plc(job->inputs[0]); }, [&](const RunControl& control) { return generate(plc, job->options, control); });
+        };
+    });
 }
 
 }  // namespace wellmesh::cli

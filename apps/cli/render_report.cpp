@@ -135,6 +135,20 @@ std::string render_invariants(const InvariantReport& report) {
     return text;
 }
 
+std::string render_given(const GivenMeshStatistics& given) {
+    std::string text = fmt::format("the given mesh: {} vertices; {} of its {} tetrahedra are Delaunay\n", given.vertices, given.delaunay_tets, given.tets);
+    const auto line = [&](std::uint64_t count, const char* what) {
+        if (count > 0) text += fmt::format("  {} {}\n", count, what);
+    };
+    if (given.moved_onto_input > 0)
+        text += fmt::format("  {} vertices moved onto the input, by at most {:.4g}\n", given.moved_onto_input, given.farthest_vertex);
+    line(given.dropped_vertices, "vertices dropped: of no tetrahedron, or two at one place");
+    line(given.added_input_vertices, "vertices added that the input has and the mesh had not");
+    line(given.added_for_conformity, "vertices added for conformity");
+    line(given.added_for_refinement, "vertices added for radius-edge ratio and size");
+    return text;
+}
+
 std::string render_regions(const Certificate& certificate) {
     if (certificate.regions.empty()) return {};
     TextTable table({{"region", Align::right}, {"tetrahedra", Align::right}, {"volume", Align::right}, {"input's volume", Align::right}, {"relative difference", Align::right}});

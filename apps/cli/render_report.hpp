@@ -21,6 +21,7 @@ namespace wellmesh::cli {
 [[nodiscard]] std::string render_shape(const Certificate& certificate);           ///< all, interior, boundary side by side
 [[nodiscard]] std::string render_histogram(const ShapeStatistics& statistics);
 [[nodiscard]] std::string render_invariants(const InvariantReport& report);
+[[nodiscard]] std::string render_given(const GivenMeshStatistics& given);        ///< a few lines
 [[nodiscard]] std::string render_regions(const Certificate& certificate);
 [[nodiscard]] std::string render_stages(const std::vector<StageTime>& stages);
 [[nodiscard]] std::string render_diagnosis(const Diagnosis& diagnosis);

@@ -77,8 +77,8 @@ std::string explain_unknown(const CLI::App& program, const std::string& word) {
 
 std::string exit_status_footer() {
     return "Exit status\n"
-           "  0    goals met (check: no claim refuted)\n"
-           "  1    a valid mesh that misses goals, listed (check: a claim refuted)\n"
+           "  0    goals met (check: no claim refuted; study: every run has a mesh)\n"
+           "  1    a valid mesh that misses goals, listed (check: a claim refuted; study: a run failed)\n"
            "  2    bad input, diagnosed; nothing written\n"
            "  3    usage: unknown option, value out of range\n"
            "  4    gave up before the mesh conformed (vertices, time, memory, acute feature); nothing written\n"

@@ -31,7 +31,21 @@ struct StageTime {
     std::uint64_t vertices_after = 0, tets_after = 0;
 };
 
+/// What improve() found in the mesh that it was given, and did to it before shape work began.
+struct GivenMeshStatistics {
+    std::uint64_t vertices = 0, tets = 0;      ///< of the given mesh
+    std::uint64_t delaunay_tets = 0;           ///< of these tetrahedra are Delaunay, hence kept
+    double tolerance = 0;                      ///< how far off the input its boundary may be, input units
+    double farthest_vertex = 0;                ///< how far it is
+    std::uint64_t moved_onto_input = 0;        ///< vertices that were moved onto their input vertex, segment or facet
+    std::uint64_t dropped_vertices = 0;        ///< of no tetrahedron, or at the place of another vertex
+    std::uint64_t added_input_vertices = 0;    ///< the input has them, the mesh did not
+    std::uint64_t added_for_conformity = 0;    ///< until every segment and facet was there, and Gabriel
+    std::uint64_t added_for_refinement = 0;    ///< until radius-edge ratio and size were met
+};
+
 struct MeshStatistics {
+    std::optional<GivenMeshStatistics> given{};  ///< improve() only
     std::vector<StageTime> stages;
     std::uint64_t input_vertices = 0, segment_vertices = 0, facet_vertices = 0, interior_vertices = 0;
     std::uint64_t moved_vertices = 0, removed_vertices = 0;

@@ -36,6 +36,9 @@ struct TetMesh {
 
     std::vector<std::array<std::uint32_t, 2>> subsegments;  ///< mesh edges that represent segments
     std::vector<std::int32_t> subsegment_segments;          ///< reference: number, from 1, of the segment
+
+    /// Rounding that the coordinates underwent before they became doubles, as Plc::relative_rounding. Known of meshes read from files; else 0.
+    double relative_rounding = 0;
 };
 
 }  // namespace wellmesh

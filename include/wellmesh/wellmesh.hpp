@@ -7,6 +7,7 @@
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/error.hpp"
 #include "wellmesh/generate.hpp"
+#include "wellmesh/improve.hpp"
 #include "wellmesh/invariants.hpp"
 #include "wellmesh/io.hpp"
 #include "wellmesh/options.hpp"

@@ -17,24 +17,33 @@ void bounding_box(const std::vector<Vec3>& points, Vec3& lo, Vec3& hi) {
     }
 }
 
-ConformingMesh::ConformingMesh(const ValidPlc& plc) : plc_(&plc) {
+ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint> more) : plc_(&plc) {
+    std::vector<Vec3> points = plc.vertices;
+    for (const CarriedPoint& p : more) points.push_back(p.point);
     Vec3 lo, hi;
-    bounding_box(plc.vertices, lo, hi);
+    bounding_box(points, lo, hi);
     // Steiner points on the hull are rounded, so they may leave the input's box by an ulp; the filter must cover them.
     const Vec3 margin = 1e-9 * (hi - lo) + Vec3{1e-15 * std::abs(hi.x), 1e-15 * std::abs(hi.y), 1e-15 * std::abs(hi.z)} +
                         Vec3{1e-15 * std::abs(lo.x), 1e-15 * std::abs(lo.y), 1e-15 * std::abs(lo.z)};
     tri_ = Triangulation(lo - margin, hi + margin);
-    if (!tri_.insert_all(plc.vertices))
+    if (!tri_.insert_all(points))
         throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all vertices lie in one plane: there is no volume to mesh");
     WELLMESH_CHECK(Stage::delaunay, tri_.duplicate_count() == 0);
-    info_.resize(plc.vertices.size());
-    for (std::size_t i = 0; i < info_.size(); ++i) {
+    on_facet_.resize(plc.facets.size());
+    on_segment_.resize(plc.segments.size());
+    info_.resize(points.size());
+    for (std::size_t i = 0; i < plc.vertices.size(); ++i) {
         info_[i].carrier = CarrierKind::input_vertex;
         info_[i].carrier_id = static_cast<std::uint32_t>(i);
     }
+    for (std::size_t i = plc.vertices.size(); i < points.size(); ++i) {
+        const CarriedPoint& p = more[i - plc.vertices.size()];
+        info_[i].carrier = p.carrier;
+        info_[i].carrier_id = p.carrier_id;
+        if (p.carrier == CarrierKind::facet) on_facet_[p.carrier_id].push_back(VertexId{i});
+        if (p.carrier == CarrierKind::segment) on_segment_[p.carrier_id].push_back(VertexId{i});
+    }
     vertex_count_ = info_.size();
-    on_facet_.resize(plc.facets.size());
-    on_segment_.resize(plc.segments.size());
     facet_labelled_.assign(plc.facets.size(), 0);
     records_.emplace_back();  // record 0 means none
     for (const ValidCell& c : plc.cells) filled_.push_back(c.filled ? 1 : 0);

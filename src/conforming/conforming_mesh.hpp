@@ -71,11 +71,18 @@ struct TetLabels {
     std::array<SegmentId, 6> segments{};
 };
 
+/// A point that is to be a vertex from the start, on its carrier up to rounding.
+struct CarriedPoint {
+    Vec3 point{};
+    CarrierKind carrier = CarrierKind::region;  ///< no input vertex: those are there anyway
+    std::uint32_t carrier_id = 0;               ///< as in VertexInfo
+};
+
 class ConformingMesh {
 public:
-    /// Triangulates the input's vertices: mesh vertex i is vertex i of the PLC. Nothing is labelled yet.
-    /// @throws MeshError{bad_input} if all vertices are coplanar.
-    explicit ConformingMesh(const ValidPlc& plc);
+    /// Triangulates the input's vertices, mesh vertex i is vertex i of the PLC, and after them `more`. Nothing is labelled yet.
+    /// @pre no two points are the same. @throws MeshError{bad_input} if all vertices are coplanar.
+    explicit ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint> more = {});
 
     [[nodiscard]] const ValidPlc& plc() const { return *plc_; }
     [[nodiscard]] Triangulation& triangulation() { return tri_; }

@@ -30,10 +30,7 @@ void BoundaryRefiner::queue_chain(SegmentId s) {
 }
 
 void BoundaryRefiner::recover_segments() {
-    for (std::size_t i = 0; i < mesh_.plc().segments.size(); ++i) {
-        const auto& ends = mesh_.plc().segments[i].ends;
-        segments_.push_back({{ends[0], ends[1], SegmentId{i}}, VertexId{}});
-    }
+    for (std::size_t i = 0; i < mesh_.plc().segments.size(); ++i) queue_chain(SegmentId{i});
     drain_segments();
 }
 

@@ -105,6 +105,7 @@ public:
         if (!quadrilaterals_.corners.empty()) in_.fail("the file has Quadrilaterals; a tetrahedral mesh has triangles alone");
         TetMesh mesh;
         mesh.vertices = std::move(vertices_);
+        mesh.relative_rounding = precision_.relative_rounding();
         mesh.tets = std::move(tets_.corners);
         mesh.tet_regions = std::move(tets_.references);
         mesh.subfaces = std::move(triangles_.corners);
@@ -146,15 +147,10 @@ private:
         vertices_.reserve(count);
         if (as_surface_) vertex_lines_.reserve(count);
         for (std::size_t v = 0; v < count; ++v) {
-            vertices_.push_back(read_coordinates());
+            vertices_.push_back(read_point(in_, precision_));
             if (as_surface_) vertex_lines_.push_back(in_.line32());
             (void)in_.integer32("a reference");
         }
-    }
-
-    Vec3 read_coordinates() {
-        // The precision of a text matters to a surface that is to be meshed; a mesh is taken as it is.
-        return as_surface_ ? read_point(in_, precision_) : read_seed(in_);
     }
 
     template <std::size_t N>

@@ -77,13 +77,14 @@ std::filesystem::path with_extension(std::filesystem::path path, const char* ext
 
 TetMesh read_tetgen_mesh(const std::filesystem::path& path) {
     TetMesh mesh;
-    TextPrecision unused;
+    TextPrecision precision;
     const SourceFile node_file = read_source(with_extension(path, ".node"));
     TextScanner in(node_file, kTetgenSyntax);
-    NodeList nodes = read_node_list(in, unused);
+    NodeList nodes = read_node_list(in, precision);
     if (!in.at_end()) in.fail_expected(in.next(), "nothing after the points");
     const NodeNumbering numbering(nodes);
     mesh.vertices = std::move(nodes.points);
+    mesh.relative_rounding = precision.relative_rounding();
     RowReader<4>(read_source(with_extension(path, ".ele")), numbering).read_tets(mesh.tets, mesh.tet_regions);
     const auto faces = with_extension(path, ".face"), edges = with_extension(path, ".edge");
     if (std::filesystem::exists(faces)) RowReader<3>(read_source(faces), numbering).read_markers(mesh.subfaces, mesh.subface_facets);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "adoption/adopt.hpp"
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
@@ -20,13 +21,16 @@
 #include "strategies/sliver_strategies.hpp"
 #include "validation/valid_plc.hpp"
 #include "wellmesh/generate.hpp"
+#include "wellmesh/improve.hpp"
 
 namespace wellmesh {
 namespace {
 
 class Generator {
 public:
-    Generator(const Plc& plc, const MeshOptions& options, const RunControl& control) : plc_(plc), options_(options), control_(control), guard_(options.limits, control) {}
+    /// @param given  the mesh to start from; null: from the input's vertices alone.
+    Generator(const Plc& plc, const TetMesh* given, const MeshOptions& options, const RunControl& control)
+        : plc_(plc), given_(given), options_(options), control_(control), guard_(options.limits, control) {}
 
 private:
     template <class F>
@@ -88,9 +92,9 @@ public:
 
 private:
     void fill(const ValidPlc& valid) {
-        ConformingMesh mesh = timed(Stage::delaunay, [&] { return ConformingMesh(valid); });
+        ConformingMesh mesh = timed(Stage::delaunay, [&] { return start(valid); });
         const bool acute = !valid.acute_features.empty();
-        if (acute) guard_.set_ceiling(10 * valid.vertices.size() + 20'000);
+        if (acute) guard_.set_ceiling(10 * mesh.vertex_count() + 20'000);
         BoundaryRefiner boundary(mesh, guard_, options_.seed);
         const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);
         const auto count = [&] {
@@ -99,9 +103,12 @@ private:
             for (std::size_t i = 0; i < mesh.tets().slots(); ++i) tets_ += mesh.tets().is_finite(TetId{i}) && mesh.in_domain(TetId{i});
         };
         timed(Stage::conform, [&] {
+            const std::size_t before = mesh.vertex_count();
             boundary.recover_all();
+            if (given_) settle_regions(mesh);
             boundary.conform();
             count();
+            if (given_) result_.statistics.given->added_for_conformity = mesh.vertex_count() - before;
         });
         Refiner refiner(mesh, boundary, guard_, options_);
         refuse_hopeless(expected_vertices(valid, refiner.sizes()));
@@ -113,9 +120,11 @@ private:
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
             // The published ways have no seeds: they begin with what Delaunay refinement makes.
-            if (options_.slivers == SliverStrategy::best && options_.seeding == Seeding::automatic && !certified)
+            if (!given_ && options_.slivers == SliverStrategy::best && options_.seeding == Seeding::automatic && !certified)
                 LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
+            const std::size_t before = mesh.vertex_count();
             verdict = refiner.refine();
+            if (given_) result_.statistics.given->added_for_refinement = mesh.vertex_count() - before;
             if (certified || !only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
             count();
         });
@@ -151,6 +160,11 @@ private:
             size.max_volume = std::min(size.max_volume, sizes[c].max_volume);
         }
         return bounds;
+    }
+
+    ConformingMesh start(const ValidPlc& valid) {
+        if (!given_) return ConformingMesh(valid);
+        return adopt_mesh(*given_, valid, adoption_tolerance(*given_, plc_), result_.statistics.given.emplace());
     }
 
     /// A size that asks for more than a mesh can hold is told at once, not when memory ends. A limit of the user's may end the run before.
@@ -230,6 +244,7 @@ private:
     }
 
     const Plc& plc_;
+    const TetMesh* given_;
     const MeshOptions& options_;
     const RunControl& control_;
     RunGuard guard_;
@@ -242,7 +257,16 @@ private:
 MeshResult generate(const Plc& plc, const MeshOptions& options, const RunControl& control) {
     const std::vector<std::string> wrong = check(options);
     if (!wrong.empty()) throw MeshError(ErrorCode::bad_options, Stage::validate, fmt::format("{}", fmt::join(wrong, "; ")));
-    return Generator(plc, options, control).run();
+    return Generator(plc, nullptr, options, control).run();
+}
+
+MeshResult improve(const TetMesh& mesh, const Plc& plc, const MeshOptions& options, const RunControl& control) {
+    std::vector<std::string> wrong = check(options);
+    if (options.mode == Mode::certified) wrong.push_back("the mode must be practical: the paper's claims are about meshes that are made from scratch");
+    if (options.slivers != SliverStrategy::best) wrong.push_back("slivers must be best where a mesh is given");
+    if (options.invariants) wrong.push_back("invariants are claims about insertions and can't be asked for where a mesh is given");
+    if (!wrong.empty()) throw MeshError(ErrorCode::bad_options, Stage::validate, fmt::format("{}", fmt::join(wrong, "; ")));
+    return Generator(plc, &mesh, options, control).run();
 }
 
 }  // namespace wellmesh
