@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "shape/improve.hpp"
 #include "strategies/local_improver.hpp"
@@ -47,7 +49,7 @@ std::string growth_note(const MeshOptions& options, std::uint64_t almost_good, c
                        mesh.vertex_count(), kGrowthLimit, almost_good, kGrowthAllowance);
 }
 
-SliverOutcome refine_slivers(const ConformingMesh& mesh, Refiner& refiner, const MeshOptions& options) {
+SliverOutcome refine_slivers(ConformingMesh& mesh, const BoundaryRefiner& boundary, Refiner& refiner, RunGuard& guard, const MeshOptions& options) {
     SliverOutcome outcome;
     SliverRule rule;
     if (!sliver_rule(options, rule)) return outcome;
@@ -55,7 +57,26 @@ SliverOutcome refine_slivers(const ConformingMesh& mesh, Refiner& refiner, const
     const std::uint64_t almost_good = mesh.vertex_count();
     refiner.set_sliver_rule(rule);
     refiner.set_sliver_budget(growth_budget(mesh));
-    outcome.verdict = refiner.refine();
+    // The paper assumes that no input angle is acute. Where one is, splits about it may chase each other until there is no mesh to hand out.
+    std::optional<ConformingMesh> before;
+    if (!mesh.plc().acute_features.empty() && !boundary.recorder) {
+        before = mesh;
+        guard.set_ceiling(2 * growth_budget(mesh));
+    }
+    bool endless = false;
+    try {
+        outcome.verdict = refiner.refine();
+        endless = outcome.verdict == RunGuard::Verdict::out_of_vertices;
+    } catch (const MeshError& e) {
+        if (!before || e.code() != ErrorCode::budget_exhausted || guard.user_limit_spent()) throw;
+        endless = true;
+    }
+    if (before && endless && !guard.user_limit_spent()) {
+        mesh = std::move(*before);
+        outcome.verdict = RunGuard::Verdict::go_on;
+        outcome.note = "refine gave up on slivers, as splits about an acute angle of the input would not end: the almost-good mesh is left";
+        return outcome;
+    }
     if (refiner.sliver_budget_spent()) outcome.note = growth_note(options, almost_good, mesh);
     return outcome;
 }
@@ -104,7 +125,7 @@ SliverOutcome remove_slivers(ConformingMesh& mesh, BoundaryRefiner& boundary, Re
         case SliverStrategy::none:
         case SliverStrategy::chew:   // refinement has made none where it could
         case SliverStrategy::exude: break;  // the finished mesh gets weights (exudation/)
-        case SliverStrategy::refine: return refine_slivers(mesh, refiner, options);
+        case SliverStrategy::refine: return refine_slivers(mesh, boundary, refiner, guard, options);
         case SliverStrategy::improve: return improve_locally(mesh, boundary, refiner, guard, options);
         case SliverStrategy::perturb:
         case SliverStrategy::best: {
