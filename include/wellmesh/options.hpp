@@ -26,7 +26,7 @@ struct PaperConstants {
 };
 inline constexpr double kPracticalDelta = 0.3;  ///< docs/decisions/0010
 inline constexpr double kPracticalB = 2;        ///< of refine; improve asks of every new tetrahedron to be better, however large
-inline constexpr double kCertifiedDelta = 0.05, kCertifiedB = 4.5, kCertifiedRadiusEdgeRatio = 20, kCertifiedSigma = 0.01;
+inline constexpr double kCertifiedDelta = 0.05, kCertifiedB = 4.5, kCertifiedRadiusEdgeRatio = 20, kCertifiedSigma = 0.005;
 
 /// How slivers are kept away or removed: the systems that the paper compares with, each as its own source describes it, and this program's own
 /// way (docs/strategies.md). All of them keep the mesh Delaunay, conforming and Gabriel (exude: with respect to its weights), and all end,

@@ -85,7 +85,7 @@ TEST(mesh_command, certified_mode_shows_that_every_claim_held) {
     EXPECT_LT(invariants.at("log10_existence_sigma0").get<double>(), -1000);
     EXPECT_GE(invariants.at("claims").size(), 29U);
     for (const json& timing : report.at("timings")) EXPECT_NE(timing.at("stage"), "shape");
-    EXPECT_EQ(run_wellmesh({"check", scratch.file("out.mesh"), "--plc", cube, "--max-radius-edge", "20", "--min-sigma", "0.01"}).status, 0);
+    EXPECT_EQ(run_wellmesh({"check", scratch.file("out.mesh"), "--plc", cube, "--max-radius-edge", "20", "--min-sigma", "0.005"}).status, 0);
 }
 
 TEST(mesh_command, slivers_are_treated_as_asked_and_what_is_missed_is_said) {
