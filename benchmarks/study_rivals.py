@@ -296,7 +296,7 @@ def main():
                     volume = total_volume(arguments.program, model, folder)
                     start = volume / target * 0.4 if rival.power == 1 else (volume / target * 1.4) ** (1 / 3)
                     result, report = meet(rival, arguments.program, model, target, start, arguments.limit)
-                except Failed as failure:
+                except (Failed, OSError) as failure:
                     print(f"  {model}: {failure}")
                     good = False
                     continue
