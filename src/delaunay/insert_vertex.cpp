@@ -62,8 +62,10 @@ void Triangulation::clear_local_numbers(std::size_t most) {
 template <bool kOnHull, bool kByTable>
 void Triangulation::create_new_tets(VertexId v, const Cavity& cavity) {
     const std::size_t n = faces_.size();
-    const std::size_t stride = kByTable ? std::max<std::size_t>(32, std::bit_ceil(std::size_t{local_count_})) : 0;  // without a table all edges share a cell
-    if (edge_table_.size() < stride * stride + 1) edge_table_.resize(stride * stride + 1);
+    const std::size_t stride = kByTable ? std::max<std::size_t>(32, std::bit_ceil(std::size_t{local_count_})) : 1;
+    if (edge_table_.size() < stride * stride) edge_table_.resize(stride * stride);
+    // Without a table all edges share a cell: whatever it holds is replaced by join_by_sorting().
+    const auto cell = [stride](std::uint32_t x, std::uint32_t y) { return kByTable ? x * stride + y : 0; };
     auto face_number = [](const NewFace& f, unsigned k) -> unsigned {
         if (!kOnHull || f.corners[2] != kInfiniteVertex) return k;
         constexpr std::array<std::uint8_t, 3> kGhostFace{1, 0, 3};
@@ -74,15 +76,15 @@ void Triangulation::create_new_tets(VertexId v, const Cavity& cavity) {
         new_tets_[i] = t;
         const NewFace& f = faces_[i];
         const auto [a, b, c] = f.local;
-        edge_table_[b * stride + c] = TetFace{t, face_number(f, 0)};
-        edge_table_[c * stride + a] = TetFace{t, face_number(f, 1)};
-        edge_table_[a * stride + b] = TetFace{t, face_number(f, 2)};
+        edge_table_[cell(b, c)] = TetFace{t, face_number(f, 0)};
+        edge_table_[cell(c, a)] = TetFace{t, face_number(f, 1)};
+        edge_table_[cell(a, b)] = TetFace{t, face_number(f, 2)};
     }
     for (std::size_t i = 0; i < n; ++i) {
         const NewFace& f = faces_[i];
         const TetId t = new_tets_[i];
         const auto [a, b, c] = f.local;
-        const TetFace across0 = edge_table_[c * stride + b], across1 = edge_table_[a * stride + c], across2 = edge_table_[b * stride + a];
+        const TetFace across0 = edge_table_[cell(c, b)], across1 = edge_table_[cell(a, c)], across2 = edge_table_[cell(b, a)];
         if (kOnHull && f.corners[2] == kInfiniteVertex) {
             tets_.set(t, {f.corners[1], f.corners[0], v, kInfiniteVertex}, {across1, across0, f.outside, across2});
             tets_.set_across(f.outside, TetFace{t, 2});

@@ -192,6 +192,24 @@ TEST(Triangulation, RemovalThenInsertionRestores) {
     }
 }
 
+TEST(Triangulation, JoinsAVertexWithThousandsOfNeighbours) {
+    // The centre of a sphere of points is a neighbour of them all: far more than the table of edges is made for.
+    std::vector<Vec3> points;
+    for (std::uint64_t i = 0; points.size() < 6000; ++i) {
+        const Vec3 p{2 * unit_double(mix64(9, 3 * i)) - 1, 2 * unit_double(mix64(9, 3 * i + 1)) - 1, 2 * unit_double(mix64(9, 3 * i + 2)) - 1};
+        if (squared_norm(p) > 0.1 && squared_norm(p) <= 1) points.push_back((1 / norm(p)) * p);
+    }
+    Triangulation mesh = triangulate(points);
+    const VertexId centre = mesh.add_point({1e-3, -2e-3, 1e-3});
+    Cavity cavity;
+    ASSERT_TRUE(mesh.find_conflict_cavity(mesh.point(centre), mesh.tet_of(VertexId{1}), cavity));
+    mesh.insert_vertex(centre, cavity);
+    EXPECT_GT(mesh.new_tets().size(), 10'000U);
+    points.push_back(mesh.point(centre));
+    EXPECT_EQ(tets_of(mesh), tets_of(triangulate(points)));
+    EXPECT_EQ(check_delaunay(mesh), "");
+}
+
 TEST(Triangulation, FindsEdgesAndFaces) {
     Triangulation mesh = triangulate(random_points(300, 4));
     std::size_t faces = 0;
