@@ -165,6 +165,7 @@ Json to_json(const GivenMeshStatistics& given) {
     json["dropped_vertices"] = given.dropped_vertices;
     json["added_input_vertices"] = given.added_input_vertices;
     json["added_for_conformity"] = given.added_for_conformity;
+    json["min_dihedral_angle_deg"] = given.min_dihedral_angle_deg;
     json["added_for_refinement"] = given.added_for_refinement;
     return json;
 }

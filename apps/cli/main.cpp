@@ -81,7 +81,13 @@ int run(int argc, char** argv) {
                            add_example_command})
         add(program, selected);
     program.footer(exit_status_footer());
-    for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) command->footer(exit_status_footer());
+    // An unset shell variable is no number, and no file either.
+    const CLI::Validator not_empty([](std::string& text) { return text.empty() ? std::string("must not be empty") : std::string(); }, "");
+    for (CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) {
+        command->footer(exit_status_footer());
+        for (CLI::Option* option : command->get_options())
+            if (option->get_expected_max() > 0) option->check(not_empty);
+    }
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -136,7 +136,8 @@ std::string render_invariants(const InvariantReport& report) {
 }
 
 std::string render_given(const GivenMeshStatistics& given) {
-    std::string text = fmt::format("the given mesh: {} vertices; {} of its {} tetrahedra are Delaunay\n", given.vertices, given.delaunay_tets, given.tets);
+    std::string text = fmt::format("the given mesh: {} vertices; {} of its {} tetrahedra are Delaunay; smallest dihedral angle {:.4g} degrees\n", given.vertices,
+                                   given.delaunay_tets, given.tets, given.min_dihedral_angle_deg);
     const auto line = [&](std::uint64_t count, const char* what) {
         if (count > 0) text += fmt::format("  {} {}\n", count, what);
     };

@@ -35,6 +35,7 @@ struct StageTime {
 struct GivenMeshStatistics {
     std::uint64_t vertices = 0, tets = 0;      ///< of the given mesh
     std::uint64_t delaunay_tets = 0;           ///< of these tetrahedra are Delaunay, hence kept
+    double min_dihedral_angle_deg = 180;       ///< of these tetrahedra
     double tolerance = 0;                      ///< how far off the input its boundary may be, input units
     double farthest_vertex = 0;                ///< how far it is
     std::uint64_t moved_onto_input = 0;        ///< vertices that were moved onto their input vertex, segment or facet

@@ -11,6 +11,7 @@
 #include "adoption/carrier_finder.hpp"
 #include "adoption/given_mesh.hpp"
 #include "core/vec3_math.hpp"
+#include "quality/tet_shape.hpp"
 #include "validation/rounding.hpp"
 #include "wellmesh/certificate.hpp"
 #include "wellmesh/error.hpp"
@@ -205,6 +206,11 @@ void Adopter::count_kept(const ConformingMesh& conforming) {
     statistics_.vertices = mesh_.vertices.size();
     statistics_.tets = mesh_.tets.size();
     statistics_.delaunay_tets = both.size();
+    for (const auto& t : mesh_.tets) {
+        const Vec3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]], &d = mesh_.vertices[t[3]];
+        const double angle = std::max(min_dihedral_deg(a, b, c, d), min_dihedral_deg(b, a, c, d));  // either orientation
+        statistics_.min_dihedral_angle_deg = std::min(statistics_.min_dihedral_angle_deg, angle);
+    }
     statistics_.tolerance = tolerance_;
 }
 

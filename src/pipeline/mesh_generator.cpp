@@ -79,6 +79,10 @@ public:
         result_.statistics.certificate_flat_angle_rad = bounds.flat_angle_rad;
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
         fail_if_refuted();
+        if (given_ && result_.certificate.all.min_dihedral_angle_deg < result_.statistics.given->min_dihedral_angle_deg * (1 - 1e-9))
+            result_.statistics.notes.push_back(
+                fmt::format("the smallest dihedral angle has gone from {:.4g} to {:.4g} degrees: the mesh had to be triangulated or refined anew, and the goal is lower",
+                            result_.statistics.given->min_dihedral_angle_deg, result_.certificate.all.min_dihedral_angle_deg));
         try {
             judge_invariants(result_, options_);
         } catch (const MeshError& e) {
