@@ -86,6 +86,7 @@ TEST(usage, values_out_of_range_are_refused_with_the_range) {
         {{"--min-dihedral", "-1"}, "70.52"}, {{"--min-dihedral", "71"}, "70.52"}, {{"--min-dihedral", "nan"}, "70.52"},
         {{"--coplanar-tolerance", "-1e-9"}, "at least 0"}, {{"--coplanar-tolerance", "nan"}, "at least 0"},
         {{"--max-vertices", "3"}, "at least 4"}, {{"--max-vertices", "-5"}, "whole number"}, {{"--max-vertices", "1e3"}, "whole number"},
+        {{"--min-dihedral", ""}, "must not be empty"}, {{"--size", ""}, "must not be empty"},
         {{"--seed", "-1"}, "whole number"}, {{"--seed", "18446744073709551616"}, "whole number"}, {{"--seed", ""}, "whole number"},
         {{"--time-limit", "0"}, "seconds"}, {{"--time-limit", "-1"}, "seconds"}, {{"--time-limit", "nan"}, "seconds"}, {{"--time-limit", "1e300"}, "seconds"},
         {{"--msh-version", "40"}, "41 or 22"},
