@@ -5,8 +5,15 @@
 #include <algorithm>
 
 #include "conforming/conforming_mesh.hpp"
+#include "core/rng.hpp"
 
 namespace wellmesh {
+
+/// A hash that is the same in any order of the corners.
+inline std::uint64_t key_of(TetStore::Corners c) {
+    std::sort(c.begin(), c.end());
+    return mix64(mix64(c[0].value(), c[1].value()), mix64(c[2].value(), c[3].value()));
+}
 
 /// The domain tetrahedron with these corners, or an invalid id.
 inline TetId find_tet(ConformingMesh& mesh, const TetStore::Corners& corners) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/rng.hpp"
 #include "shape/corners.hpp"
 
 namespace wellmesh {
@@ -26,11 +25,6 @@ constexpr double kFirstRungDeg = 30;      // of moves alone, which mostly reach 
 constexpr double kAspectFromDeg = 30, kMaxAspect = 8;
 /// Smoothing may make angles this small, relative to the goal, on the way: moves mend them.
 constexpr double kSmoothingFloor = 0.8;
-
-std::uint64_t key_of(TetStore::Corners c) {
-    std::sort(c.begin(), c.end());
-    return mix64(mix64(c[0].value(), c[1].value()), mix64(c[2].value(), c[3].value()));
-}
 
 /// Has the number of bad tetrahedra fallen enough to do the same again?
 bool worth_it(std::size_t before, std::size_t after) { return static_cast<double>(after) <= kWorthRepeating * static_cast<double>(before); }

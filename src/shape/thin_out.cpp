@@ -79,11 +79,11 @@ bool Thinning::mend() {
     return all_is_well();
 }
 
-/// Takes v out and draws a neighbour towards the gap.
-bool Thinning::merge(VertexId v, VertexId into, const Vec3& home) {
+/// Takes v out and draws a neighbour towards the gap, where nothing may get worse than `limit` before moves mend it.
+bool Thinning::merge(VertexId v, VertexId into, const Vec3& home, double limit) {
     if (!mover_.drop(v)) return false;
     take_note();
-    if (!mover_.pull(into, home, std::cos(kRoughFloor * std::acos(judge_.goal())))) return false;
+    if (!mover_.pull(into, home, limit)) return false;
     take_note();
     return mend();
 }
@@ -105,7 +105,7 @@ bool Thinning::dissolve(VertexId v) {
     if (attempt([&] { return mover_.remove(v, rough) && (take_note(), mend()); })) return true;
     find_neighbours(v);
     const Vec3 home = mesh_.point(v);
-    return std::any_of(neighbours_.begin(), neighbours_.end(), [&](VertexId w) { return attempt([&] { return merge(v, w, home); }); });
+    return std::any_of(neighbours_.begin(), neighbours_.end(), [&](VertexId w) { return attempt([&] { return merge(v, w, home, rough); }); });
 }
 
 RunGuard::Verdict Thinning::sweep(std::size_t first, std::size_t enough, std::size_t trials) {

@@ -26,7 +26,7 @@ public:
 private:
     RunGuard::Verdict sweep(std::size_t first, std::size_t enough, std::size_t trials);
     bool dissolve(VertexId v);
-    bool merge(VertexId v, VertexId into, const Vec3& home);
+    bool merge(VertexId v, VertexId into, const Vec3& home, double limit);
     bool mend();
     void take_note();
     void find_neighbours(VertexId v);

@@ -16,11 +16,6 @@ constexpr unsigned kMostPasses = 16;  // over what could not be improved before 
 /// Gains below this, in a cosine or in V / L^3, are rounding and would let insertions go on for ever.
 constexpr double kLeastGain = 1e-4;
 
-std::uint64_t key_of(TetStore::Corners c) {
-    std::sort(c.begin(), c.end());
-    return mix64(mix64(c[0].value(), c[1].value()), mix64(c[2].value(), c[3].value()));
-}
-
 }  // namespace
 
 /// Larger is worse: the cosine of the smallest angle, or 1 / (1 + V / L^3). kNoAngleCosine for a flat or inverted tetrahedron.
