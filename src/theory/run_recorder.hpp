@@ -6,7 +6,7 @@
 
 #include "conforming/conforming_mesh.hpp"
 #include "theory/insertion_ledger.hpp"
-#include "theory/local_feature_size.hpp"
+#include "validation/local_feature_size.hpp"
 
 namespace wellmesh {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "theory/local_feature_size.hpp"
+#include "validation/local_feature_size.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 #include "support/synthetic_plcs.hpp"
-#include "theory/local_feature_size.hpp"
+#include "validation/local_feature_size.hpp"
 
 namespace wellmesh::testing {
 namespace {
