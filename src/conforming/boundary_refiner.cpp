@@ -110,11 +110,21 @@ void BoundaryRefiner::inserted(VertexId v) {
 // ------------------------------------------------------------------------------------------------ splits
 
 double distance_to_nearest(const ConformingMesh& mesh, const Cavity& cavity) {
+    return distance(cavity.point, mesh.point(nearest_vertex(mesh, cavity)));
+}
+
+VertexId nearest_vertex(const ConformingMesh& mesh, const Cavity& cavity) {
     double shortest = std::numeric_limits<double>::infinity();
+    VertexId nearest{};
     for (const BoundaryFace& b : cavity.boundary)
-        for (const VertexId v : mesh.tets().face_corners(b.inside))
-            if (v != kInfiniteVertex) shortest = std::min(shortest, squared_distance(cavity.point, mesh.point(v)));
-    return std::sqrt(shortest);
+        for (const VertexId v : mesh.tets().face_corners(b.inside)) {
+            if (v == kInfiniteVertex) continue;
+            const double d = squared_distance(cavity.point, mesh.point(v));
+            if (d > shortest || (d == shortest && v >= nearest)) continue;
+            shortest = d;
+            nearest = v;
+        }
+    return nearest;
 }
 
 const Subsegment& longest_of(const ConformingMesh& mesh, const std::vector<Subsegment>& segments) {
@@ -145,13 +155,10 @@ bool BoundaryRefiner::refuses(const SplitRequest& request, double radius) {
     return true;
 }
 
-template <class... Corners>
-std::uint32_t BoundaryRefiner::record(const SplitRequest& request, VertexId v, const Vec3& point, double nearest, bool sliver_free, const Vec3& centre, double radius,
-                                      Corners... corners) {
-    if (!recorder) return PickEvent::kNone;
+std::uint32_t BoundaryRefiner::record_event(const SplitRequest& request, VertexId v, const Vec3& point, double nearest, bool sliver_free, const PickedElement& element) {
     PickEvent e;
     e.reason = request.reason;
-    e.element = {sizeof...(Corners), {corners...}, centre, radius};
+    e.element = element;
     e.point = point;
     e.vertex = v;
     e.rejected = request.rejected;
@@ -172,6 +179,11 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const 
     const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b);
     const std::uint64_t key = mix64(seed_, mix64(std::min(s.a, s.b).value(), std::max(s.a, s.b).value()));
     const Placement where = Placement::on_segment(s);
+    if (acute_.any()) {
+        const auto place = place_on_segment(s, request);
+        if (!place) return SplitOutcome::refused;
+        if (request.for_conformity() || place->info.ball.valid()) return split_acute(s, *place, request);
+    }
     const Vec3 middle = 0.5 * (a + b);
     const double radius = distance(a, b) / 2;
     Triangulation& tri = mesh_.triangulation();
@@ -179,7 +191,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const 
     const auto found = [&](unsigned k) {
         const double at = k == 0 ? jitter : std::min(rules.delta, rules.reach / radius) * picking_point(1, key, k).x;
         const Vec3 p = project_to_segment(mesh_.plc(), s.segment, middle + (at / 2) * (b - a));
-        return p != a && p != b && tri.find_conflict_cavity(p, tri.tet_of(s.a), cavity_);
+        return p != a && p != b && !acute_.in_ball_of_segment(s.segment, p) && tri.find_conflict_cavity(p, tri.tet_of(s.a), cavity_);
     };
     unsigned chosen = 0;
     bool sliver_free = !judge;
@@ -189,18 +201,28 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const 
                 chosen = k;
                 sliver_free = true;
             }
-    if (distance(a, b) < kShortestPiece * segment_length(s.segment) || !found(chosen))
-        throw MeshError(ErrorCode::budget_exhausted, guard_.stage(),
-                        fmt::format("segment {} can't be split any further: its pieces have shrunk to {} near ({}, {}, {})",
-                                    s.segment.value() + 1, distance(a, b), middle.x, middle.y, middle.z),
-                        {{EntityKind::segment, s.segment.value() + 1, middle}});
+    if (distance(a, b) < kShortestPiece * segment_length(s.segment) || !found(chosen)) give_up(s);
     if (refuses(request, radius)) return SplitOutcome::refused;
-    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::segment, request.reason, s.segment.value(), request.parent, 0});
+    const VertexId v = insert_on_segment(s, {.reason = request.reason, .parent = request.parent});
+    record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, sliver_free, middle, radius, s.a, s.b);
+    return SplitOutcome::inserted;
+}
+
+void BoundaryRefiner::give_up(const Subsegment& s) const {
+    const Vec3 &a = mesh_.point(s.a), &b = mesh_.point(s.b), middle = 0.5 * (a + b);
+    throw MeshError(ErrorCode::budget_exhausted, guard_.stage(),
+                    fmt::format("segment {} can't be split any further: its pieces have shrunk to {} near ({}, {}, {})", s.segment.value() + 1, distance(a, b), middle.x,
+                                middle.y, middle.z),
+                    {{EntityKind::segment, s.segment.value() + 1, middle}});
+}
+
+/// Inserts cavity_.point on the subsegment.
+VertexId BoundaryRefiner::insert_on_segment(const Subsegment& s, const VertexInfo& info) {
+    const VertexId v = mesh_.insert(cavity_, Placement::on_segment(s), info);
     for (const Subsegment& half : {Subsegment{s.a, v, s.segment}, Subsegment{v, s.b, s.segment}})
         if (!mesh_.find_subsegment(half).valid()) segments_.push_back({half, VertexId{}});
     inserted(v);
-    record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, sliver_free, middle, radius, s.a, s.b);
-    return SplitOutcome::inserted;
+    return v;
 }
 
 BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const SplitRequest& request) {
@@ -215,11 +237,15 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
     const ValidFacet& facet = mesh_.plc().facets[s.facet.index()];
     const Placement where = Placement::on_facet(s.facet);
     Triangulation& tri = mesh_.triangulation();
+    if (acute_.any()) {
+        if (request.for_conformity()) return split_acute(s.facet, s.corners, true, face.tet(), request);
+        if (fan_apex(s.corners).valid()) return SplitOutcome::refused;
+    }
     const auto found = [&](unsigned k) {
         const Vec3 unit = picking_point(2, key, k == 0 ? 1 : k);
         const double r = k == 0 ? rules.jitter * radius : rules.region(radius);
         const Vec3 p = project_to_facet(facet, centre + (r * unit.x) * facet.axis_u + (r * unit.y) * facet.axis_v);
-        return tri.find_conflict_cavity(p, face.tet(), cavity_);
+        return tri.find_conflict_cavity(p, face.tet(), cavity_) && !(k > 0 && ball_around(cavity_).valid());
     };
     // The centre decides whether a subsegment has to be split instead.
     if (!found(0)) return SplitOutcome::gone;
@@ -227,6 +253,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
     if (!encroached_segments_.empty()) {
         const std::vector<Subsegment> targets = encroached_segments_;
         SplitRequest passed = request;
+        if (acute_.any()) passed.witness = CarriedWitness{cavity_.point, CarrierKind::facet, s.facet.value()};
         passed.rejected = record(request, VertexId{}, cavity_.point, recorder ? distance_to_nearest(mesh_, cavity_) : 0, true, centre, radius, s.corners[0], s.corners[1],
                                  s.corners[2]);
         passed.projection_depth = 0;
@@ -253,8 +280,8 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
         const Vec3 p = project_to_facet(facet, a + (1.0 / 3) * ((b - a) + (c - a)));
         if (!tri.find_conflict_cavity(p, face.tet(), cavity_)) return SplitOutcome::gone;
     }
-    if (refuses(request, radius)) return SplitOutcome::refused;
-    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::facet, request.reason, s.facet.value(), request.parent, 0});
+    if (refuses(request, radius) || ball_around(cavity_).valid()) return SplitOutcome::refused;
+    const VertexId v = mesh_.insert(cavity_, where, {.reason = request.reason, .parent = request.parent});
     inserted(v);
     record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, sliver_free, centre, radius, s.corners[0], s.corners[1], s.corners[2]);
     return SplitOutcome::inserted;

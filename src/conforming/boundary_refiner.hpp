@@ -9,8 +9,10 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "conforming/acute_geometry.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "conforming/insertion_recorder.hpp"
 #include "core/run_guard.hpp"
@@ -24,6 +26,9 @@ struct SplitRequest {
     std::uint32_t rejected = PickEvent::kNone;  ///< the recorder's number of that centre
     double projection_depth = 0;                ///< as in PickEvent
     bool outside_rules = false;                 ///< as in PickEvent
+    /// The point, a vertex or a candidate, whose copy is to be inserted where the input is acute. Empty: found by its nearness.
+    std::optional<CarriedWitness> witness{};
+    [[nodiscard]] bool for_conformity() const { return reason == InsertionReason::encroachment || reason == InsertionReason::recovery; }
 };
 
 /// How points are picked. The defaults are the practical mode's (docs/decisions/0010).
@@ -44,7 +49,8 @@ struct PickingRules {
 
 class BoundaryRefiner {
 public:
-    BoundaryRefiner(ConformingMesh& mesh, RunGuard& guard, std::uint64_t seed) : mesh_(mesh), guard_(guard), seed_(seed) {}
+    /// @param acute  where copies and balls are needed; it must know the mesh's own PLC.
+    BoundaryRefiner(ConformingMesh& mesh, RunGuard& guard, std::uint64_t seed, AcuteGeometry& acute) : mesh_(mesh), guard_(guard), seed_(seed), acute_(acute) {}
 
     /// Called after every insertion, with the new vertex; the triangulation's new_tets() are still its star.
     std::function<void(VertexId)> on_insert{};
@@ -85,6 +91,10 @@ public:
     /// Deferred: a subsegment had to be split instead.
     SplitOutcome split(const Subface& s, const SplitRequest& request);
 
+    /// The acute input vertex in whose ball the cavity's point lies, invalid if in none: its Delaunay neighbour, since balls are empty.
+    [[nodiscard]] VertexId ball_around(const Cavity& cavity);
+    [[nodiscard]] AcuteGeometry& acute() { return acute_; }
+
     [[nodiscard]] std::uint64_t seed() const { return seed_; }
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
     /// Edges shorter than this are not made for quality: (1 - delta) / 4 of the reference [LiTeng01, Theorem 4.2]. The theorem does not know
@@ -105,15 +115,38 @@ private:
     void inserted(VertexId v);
     bool refuses(const SplitRequest& request, double radius);
     template <class... Corners>
-    std::uint32_t record(const SplitRequest& request, VertexId v, const Vec3& point, double nearest, bool sliver_free, const Vec3& centre, double radius, Corners... corners);
+    std::uint32_t record(const SplitRequest& request, VertexId v, const Vec3& point, double nearest, bool sliver_free, const Vec3& centre, double radius, Corners... corners) {
+        if (!recorder) return PickEvent::kNone;
+        return record_event(request, v, point, nearest, sliver_free, {sizeof...(Corners), {corners...}, centre, radius});
+    }
+    std::uint32_t record_event(const SplitRequest& request, VertexId v, const Vec3& point, double nearest, bool sliver_free, const PickedElement& element);
     void poll_or_throw();
     void queue_chain(SegmentId s);
     [[nodiscard]] double segment_length(SegmentId s) const;
     void try_insert_on_facet(FacetId f, const Vec3& wanted, TetId near, const SplitRequest& request);
 
+    // where the input is acute (acute_splits.cpp)
+    struct AcutePlace {
+        Vec3 point{};
+        VertexInfo info{};        // copied, generation, ball
+        CarriedWitness witness{}; // for the subsegments that the point encroaches
+    };
+    [[nodiscard]] CarriedWitness witness_of(VertexId v) const;
+    [[nodiscard]] std::optional<CarriedWitness> nearest_witness(const Vec3& centre, double radius, TetId near, VertexId fallback);
+    [[nodiscard]] std::optional<AcutePlace> place_on_segment(const Subsegment& s, const SplitRequest& request);
+    [[nodiscard]] AcutePlace place_on_facet(FacetId f, const std::array<VertexId, 3>& corners, TetId near, const SplitRequest& request);
+    [[nodiscard]] VertexId fan_apex(const std::array<VertexId, 3>& corners) const;
+    [[nodiscard]] Vec3 cut_arc(FacetId f, const std::array<VertexId, 3>& corners, VertexId apex, const std::optional<CarriedWitness>& q);
+    [[nodiscard]] Vec3 at_distance(SegmentId s, VertexId end, double d) const;
+    VertexId insert_on_segment(const Subsegment& s, const VertexInfo& info);
+    [[noreturn]] void give_up(const Subsegment& s) const;
+    SplitOutcome split_acute(const Subsegment& s, const AcutePlace& place, const SplitRequest& request);
+    SplitOutcome split_acute(FacetId f, const std::array<VertexId, 3>& corners, bool labelled, TetId near, const SplitRequest& request);
+
     ConformingMesh& mesh_;
     RunGuard& guard_;
     std::uint64_t seed_;
+    AcuteGeometry& acute_;
     std::deque<WaitingSegment> segments_;
     std::deque<WaitingFace> faces_;
     Cavity cavity_;
@@ -129,6 +162,7 @@ void classify_cells(ConformingMesh& mesh);
 
 /// Distance from cavity.point to the nearest vertex, which is one of the cavity's: nearest neighbours are Delaunay neighbours.
 [[nodiscard]] double distance_to_nearest(const ConformingMesh& mesh, const Cavity& cavity);
+[[nodiscard]] VertexId nearest_vertex(const ConformingMesh& mesh, const Cavity& cavity);
 
 /// Which of several encroached elements to split: the longest subsegment.
 [[nodiscard]] const Subsegment& longest_of(const ConformingMesh& mesh, const std::vector<Subsegment>& segments);

@@ -40,8 +40,11 @@ enum class InsertionReason : std::uint8_t {
 struct VertexInfo {
     CarrierKind carrier = CarrierKind::region;
     InsertionReason reason = InsertionReason::input;
+    bool copied = false;           ///< the copy of a vertex on another feature (AcuteGeometry)
+    std::uint8_t generation = 0;   ///< how many copies between facets that share but a vertex are among its ancestors
     std::uint32_t carrier_id = 0;  ///< vertex, SegmentId, FacetId or CellId value, by kind
     VertexId parent{};             ///< the vertex responsible for the insertion [LiTeng01, section 5]
+    VertexId ball{};               ///< the acute input vertex on whose ball's sphere it was put
     double insertion_length = 0;   ///< e_v: shortest edge at the vertex just after its insertion
 };
 

@@ -60,7 +60,8 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
             const Vec3 wanted = project_to_facet(facet, centre + (rules.jitter * radius * unit.x) * facet.axis_u + (rules.jitter * radius * unit.y) * facet.axis_v);
             poll_or_throw();
             taken.push_back(centre);
-            try_insert_on_facet(f, wanted, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
+            if (acute_.any()) split_acute(f, m.corners, false, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
+            else try_insert_on_facet(f, wanted, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
         }
         drain_segments();
     }
@@ -77,7 +78,7 @@ void BoundaryRefiner::try_insert_on_facet(FacetId f, const Vec3& wanted, TetId n
             if (mesh_.find_subsegment(target).valid()) split(target, request);
         return;
     }
-    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::facet, request.reason, f.value(), request.parent, 0});
+    const VertexId v = mesh_.insert(cavity_, where, {.reason = request.reason, .parent = request.parent});
     inserted(v);
     if (!recorder) return;
     PickEvent e;

@@ -99,7 +99,8 @@ private:
         ConformingMesh mesh = timed(Stage::delaunay, [&] { return start(valid); });
         const bool acute = !valid.acute_features.empty();
         if (acute) guard_.set_ceiling(10 * mesh.vertex_count() + 20'000);
-        BoundaryRefiner boundary(mesh, guard_, options_.seed);
+        AcuteGeometry acute_geometry(valid);
+        BoundaryRefiner boundary(mesh, guard_, options_.seed, acute_geometry);
         const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);
         const auto count = [&] {
             vertices_ = mesh.vertex_count();

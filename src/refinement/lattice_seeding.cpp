@@ -242,7 +242,7 @@ LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near) {
     if (!is_clear(p, kClearance * radius_[cell.index()])) return Outcome::refused;
     boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
     if (!encroached_segments_.empty() || !encroached_faces_.empty()) return Outcome::encroaches;
-    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::region, InsertionReason::lattice, cell.value(), VertexId{}, 0});
+    const VertexId v = mesh_.insert(cavity_, where, {.reason = InsertionReason::lattice});
     near = tri.tet_of(v);
     return Outcome::inserted;
 }

@@ -238,7 +238,7 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
     }
     PickEvent event;
     if (boundary_.recorder) event = describe(t, reason, centre, radius);
-    const VertexId v = mesh_.insert(cavity_, where, {CarrierKind::region, reason, cell.value(), parent, 0});
+    const VertexId v = mesh_.insert(cavity_, where, {.reason = reason, .parent = parent});
     ++statistics_.insertions;
     if (boundary_.recorder) {
         event.vertex = v;

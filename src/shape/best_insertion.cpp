@@ -56,7 +56,7 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
     if (!found || !tri.find_conflict_cavity(best, t, cavity_)) return {};
     mesh_.save(cavity_.tets, before_);
     const InsertionReason reason = where.carrier == CarrierKind::region ? InsertionReason::sliver : InsertionReason::boundary_by_sliver;
-    const VertexId v = mesh_.insert(cavity_, where, {where.carrier, reason, where.carrier_id, *std::max_element(corners.begin(), corners.end()), 0});
+    const VertexId v = mesh_.insert(cavity_, where, {.reason = reason, .parent = *std::max_element(corners.begin(), corners.end())});
     changed_ = tri.new_tets();
     const bool fits = std::none_of(changed_.begin(), changed_.end(),
                                    [&](TetId n) { return boundary_.has_encroached(n) || (judge_.counts(n) && judge_.badness(n) > limit); });

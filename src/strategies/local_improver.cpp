@@ -192,7 +192,7 @@ bool LocalImprover::remove(TetId t) {
         mesh_.save(cavity_.tets, before_);
         const bool inside = region.where.carrier == CarrierKind::region;
         const InsertionReason reason = inside ? InsertionReason::sliver : InsertionReason::boundary_by_sliver;
-        const VertexId v = mesh_.insert(cavity_, region.where, {region.where.carrier, reason, region.where.carrier_id, parent, 0});
+        const VertexId v = mesh_.insert(cavity_, region.where, {.reason = reason, .parent = parent});
         if (fits(limit, rule_.smallness(region.radius))) {
             ++insertions_;
             return true;

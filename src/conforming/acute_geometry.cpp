@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "conforming/acute_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "conforming/place_point.hpp"
+#include "core/vec3_math.hpp"
+
+namespace wellmesh {
+namespace {
+
+/// Copies of copies between facets that share a vertex only need not close (two such rotations have no common axis): after so many, splits
+/// go to other places.
+constexpr std::uint8_t kMostGenerations = 2;
+
+}  // namespace
+
+AcuteGeometry::AcuteGeometry(const ValidPlc& plc, std::vector<double> largest_ball)
+    : plc_(&plc), any_(!plc.acute_features.empty()), largest_ball_(std::move(largest_ball)) {
+    if (!any_) return;
+    acute_.assign(plc.vertices.size(), 0);
+    for (const AcuteFeature& f : plc.acute_features) {
+        if (f.kind == EntityKind::vertex) acute_[f.id] = 1;
+        else
+            for (const VertexId v : plc.segments[f.id].ends) acute_[v.index()] = 1;
+    }
+    ball_.assign(plc.vertices.size(), -1);
+    feature_size_.emplace(plc);
+    list_incidences();
+    list_shared_segments();
+}
+
+void AcuteGeometry::list_incidences() {
+    const std::size_t n = plc_->vertices.size();
+    facet_rows_.assign(n + 1, 0);
+    segment_rows_.assign(n + 1, 0);
+    for (const ValidFacet& f : plc_->facets)
+        for (const VertexId v : f.vertices) ++facet_rows_[v.index() + 1];
+    for (const ValidSegment& s : plc_->segments)
+        for (const VertexId v : s.ends) ++segment_rows_[v.index() + 1];
+    for (std::size_t i = 0; i < n; ++i) {
+        facet_rows_[i + 1] += facet_rows_[i];
+        segment_rows_[i + 1] += segment_rows_[i];
+    }
+    facets_.resize(facet_rows_[n]);
+    segments_.resize(segment_rows_[n]);
+    std::vector<std::uint32_t> facet_end(facet_rows_.begin(), facet_rows_.end() - 1), segment_end(segment_rows_.begin(), segment_rows_.end() - 1);
+    for (std::size_t f = 0; f < plc_->facets.size(); ++f) {
+        ids_.emplace_back(f);
+        for (const VertexId v : plc_->facets[f].vertices) facets_[facet_end[v.index()]++] = FacetId{f};
+    }
+    for (std::size_t s = 0; s < plc_->segments.size(); ++s) {
+        segment_ids_.emplace_back(s);
+        for (const VertexId v : plc_->segments[s].ends) segments_[segment_end[v.index()]++] = SegmentId{s};
+    }
+}
+
+void AcuteGeometry::list_shared_segments() {
+    std::vector<std::tuple<FacetPair, SegmentId>> all;
+    for (std::size_t s = 0; s < plc_->segments.size(); ++s) {
+        const auto& facets = plc_->segments[s].facets;  // ascending
+        for (std::size_t i = 0; i < facets.size(); ++i)
+            for (std::size_t j = i + 1; j < facets.size(); ++j) all.push_back({{facets[i].value(), facets[j].value()}, SegmentId{s}});
+    }
+    std::sort(all.begin(), all.end());
+    for (const auto& [pair, segment] : all) {
+        if (pairs_.empty() || pairs_.back() != pair) {
+            pairs_.push_back(pair);
+            pair_rows_.push_back(static_cast<std::uint32_t>(pair_segments_.size()));
+        }
+        pair_segments_.push_back(segment);
+    }
+    pair_rows_.push_back(static_cast<std::uint32_t>(pair_segments_.size()));
+}
+
+std::span<const SegmentId> AcuteGeometry::shared_segments(FacetId f, FacetId g) const {
+    const FacetPair wanted{std::min(f, g).value(), std::max(f, g).value()};
+    const auto it = std::lower_bound(pairs_.begin(), pairs_.end(), wanted);
+    if (it == pairs_.end() || *it != wanted) return {};
+    const auto k = static_cast<std::size_t>(it - pairs_.begin());
+    return {pair_segments_.data() + pair_rows_[k], pair_segments_.data() + pair_rows_[k + 1]};
+}
+
+std::span<const FacetId> AcuteGeometry::facets_of(CarrierKind carrier, std::uint32_t id) const {
+    switch (carrier) {
+        case CarrierKind::input_vertex: return facets_at(VertexId{id});
+        case CarrierKind::segment: return plc_->segments[id].facets;
+        case CarrierKind::facet: return {ids_.data() + id, 1};
+        case CarrierKind::region: break;
+    }
+    return {};
+}
+
+std::span<const SegmentId> AcuteGeometry::segments_of(CarrierKind carrier, std::uint32_t id) const {
+    if (carrier == CarrierKind::input_vertex) return segments_at(VertexId{id});
+    if (carrier == CarrierKind::segment) return {segment_ids_.data() + id, 1};
+    return {};
+}
+
+bool AcuteGeometry::is_on_facet(VertexId input_vertex, FacetId f) const {
+    const auto& on = plc_->facets[f.index()].vertices;
+    return std::binary_search(on.begin(), on.end(), input_vertex);
+}
+
+double AcuteGeometry::ball_radius(VertexId v) {
+    if (!any_ || v.index() >= acute_.size() || !acute_[v.index()]) return 0;
+    double& r = ball_[v.index()];
+    if (r < 0) {
+        r = (*feature_size_)(point(v)) / 3;
+        if (!largest_ball_.empty()) r = std::min(r, largest_ball_[v.index()]);
+        if (!std::isfinite(r)) r = 0;
+    }
+    return r;
+}
+
+bool AcuteGeometry::in_ball_of_segment(SegmentId s, const Vec3& p) {
+    if (!any_) return false;
+    const auto& ends = plc_->segments[s.index()].ends;
+    return std::any_of(ends.begin(), ends.end(), [&](VertexId v) {
+        const double r = ball_radius(v);
+        return squared_distance(p, point(v)) < r * r;
+    });
+}
+
+std::optional<AcuteGeometry::SegmentCopy> AcuteGeometry::copy_on_segment(SegmentId s, const CarriedWitness& q) const {
+    std::optional<SegmentCopy> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const VertexId end : plc_->segments[s.index()].ends) {
+        if (q.carrier == CarrierKind::input_vertex && q.carrier_id == end.value()) continue;
+        const auto segments = segments_of(q.carrier, q.carrier_id);
+        bool related = std::any_of(segments.begin(), segments.end(), [&](SegmentId o) {
+            const auto& ends = plc_->segments[o.index()].ends;
+            return o != s && (ends[0] == end || ends[1] == end);
+        });
+        const auto facets = facets_of(q.carrier, q.carrier_id);
+        const auto& own = plc_->segments[s.index()].facets;
+        related = related || std::any_of(facets.begin(), facets.end(), [&](FacetId f) { return !std::binary_search(own.begin(), own.end(), f) && is_on_facet(end, f); });
+        if (!related) continue;
+        const Vec3 &v = point(end), &other = point(plc_->segments[s.index()].ends[plc_->segments[s.index()].ends[0] == end ? 1 : 0]);
+        const double d = distance(q.point, v);
+        const double moved = squared_distance(q.point, v + (d / distance(v, other)) * (other - v));
+        if (moved >= least) continue;
+        least = moved;
+        best = SegmentCopy{end, d};
+    }
+    return best;
+}
+
+/// Rotation about the segment into the half of the facet's plane that holds the centre, if that is less than 90 degrees away.
+std::optional<Vec3> AcuteGeometry::rotated_about(SegmentId s, FacetId f, const Vec3& q, const Vec3& centre) const {
+    const auto& ends = plc_->segments[s.index()].ends;
+    const Vec3 &a = point(ends[0]), &b = point(ends[1]);
+    const Vec3 along = (1 / distance(a, b)) * (b - a);
+    // From the nearer end, so that copies do not inherit the rounding of far ones.
+    const Vec3& from = squared_distance(q, a) < squared_distance(q, b) ? a : b;
+    const Vec3 offset = (q - from) - dot(q - from, along) * along;
+    Vec3 inward = cross(plc_->facets[f.index()].normal, along);
+    inward = (1 / norm(inward)) * inward;
+    if (dot(inward, centre - a) < 0) inward = -inward;
+    if (!(dot(inward, offset) > 0)) return std::nullopt;
+    return (q - offset) + norm(offset) * inward;
+}
+
+std::optional<Vec3> AcuteGeometry::swung_about(VertexId v, FacetId f, const Vec3& q) const {
+    const Vec3& n = plc_->facets[f.index()].normal;
+    const Vec3 d = q - point(v), flat = d - dot(d, n) * n;
+    const double length = norm(flat);
+    if (!(length > 0)) return std::nullopt;
+    return point(v) + (norm(d) / length) * flat;
+}
+
+std::optional<AcuteGeometry::FacetCopy> AcuteGeometry::copy_on_facet(FacetId f, const CarriedWitness& q, const Vec3& centre, double radius) const {
+    std::optional<FacetCopy> best;
+    double least = std::numeric_limits<double>::infinity();
+    const auto offer = [&](const std::optional<Vec3>& p, std::uint8_t generation) {
+        if (!p || !(squared_distance(*p, centre) < radius * radius)) return;
+        const double moved = squared_distance(*p, q.point);
+        if (moved >= least) return;
+        least = moved;
+        best = FacetCopy{project_to_facet(plc_->facets[f.index()], *p), generation};
+    };
+    const auto facets = facets_of(q.carrier, q.carrier_id);
+    if (std::find(facets.begin(), facets.end(), f) != facets.end()) return best;  // it lies on f itself
+    for (const FacetId g : facets)
+        for (const SegmentId s : shared_segments(f, g)) offer(rotated_about(s, f, q.point, centre), q.generation);
+    if (best) return best;
+    for (const SegmentId s : segments_of(q.carrier, q.carrier_id))
+        for (const VertexId v : plc_->segments[s.index()].ends)
+            if (is_on_facet(v, f)) offer(swung_about(v, f, q.point), q.generation);
+    if (best || q.generation >= kMostGenerations) return best;
+    for (const FacetId g : facets) {
+        const auto &few = plc_->facets[f.index()].vertices, &many = plc_->facets[g.index()].vertices;
+        const bool swap = few.size() > many.size();
+        for (const VertexId v : swap ? many : few)
+            if (is_on_facet(v, swap ? f : g)) offer(swung_about(v, f, q.point), static_cast<std::uint8_t>(q.generation + 1));
+    }
+    return best;
+}
+
+std::optional<Vec3> AcuteGeometry::direction_on_facet(FacetId f, VertexId v, const CarriedWitness& q, const Vec3& centre) const {
+    for (const FacetId g : facets_of(q.carrier, q.carrier_id)) {
+        if (g == f) continue;
+        for (const SegmentId s : shared_segments(f, g)) {
+            const auto& ends = plc_->segments[s.index()].ends;
+            if (ends[0] != v && ends[1] != v) continue;
+            if (const auto p = rotated_about(s, f, q.point, centre)) return (1 / distance(*p, point(v))) * (*p - point(v));
+        }
+    }
+    const auto p = swung_about(v, f, q.point);
+    if (!p) return std::nullopt;
+    return (1 / distance(*p, point(v))) * (*p - point(v));
+}
+
+}  // namespace wellmesh

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// What meets what at an acute angle, and where splits go there so that they end (docs/algorithm/acute.md).
+//
+// Two segments or facets that meet at less than 90 degrees can encroach each other for ever when they are split at their midpoints and
+// circumcentres. So they copy each other instead: what is encroached by a vertex of a feature that it meets is split at that vertex's copy,
+// as far from the shared vertex, or as far along and from the shared segment. The copy lies inside the encroached sphere, and never
+// encroaches where the original stands. A ball about each acute vertex is left empty: the features that leave it are cut on its sphere.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "conforming/conforming_mesh.hpp"
+#include "validation/local_feature_size.hpp"
+
+namespace wellmesh {
+
+/// A point with the cells of the input that it lies on.
+struct CarriedWitness {
+    Vec3 point{};
+    CarrierKind carrier = CarrierKind::region;
+    std::uint32_t carrier_id = 0;
+    std::uint8_t generation = 0;  ///< as in VertexInfo
+};
+
+class AcuteGeometry {
+public:
+    /// @param largest_ball  bound on the radius of the ball about each vertex, input units (sizes ask for it); empty: none.
+    explicit AcuteGeometry(const ValidPlc& plc, std::vector<double> largest_ball = {});
+
+    /// Is there any acute angle at all? If not, nothing below is ever needed.
+    [[nodiscard]] bool any() const { return any_; }
+
+    /// Radius of the ball about an input vertex that stays empty: a third of the local feature size if the vertex is acute or ends an acute
+    /// segment, else 0. Found when first asked for.
+    [[nodiscard]] double ball_radius(VertexId v);
+
+    /// Is a point of the segment in the ball of one of its ends?
+    [[nodiscard]] bool in_ball_of_segment(SegmentId s, const Vec3& p);
+
+    /// How far from the end `v` of segment s the witness's copy on it lies: as far as the witness itself, which must be on another segment at v,
+    /// or on a facet at v that does not contain s. Empty if it has none.
+    struct SegmentCopy {
+        VertexId end{};
+        double distance = 0;
+    };
+    [[nodiscard]] std::optional<SegmentCopy> copy_on_segment(SegmentId s, const CarriedWitness& q) const;
+
+    /// The witness's copy on facet f inside the sphere of a subface: rotated about a shared segment, or else about a shared vertex.
+    struct FacetCopy {
+        Vec3 point{};
+        std::uint8_t generation = 0;
+    };
+    [[nodiscard]] std::optional<FacetCopy> copy_on_facet(FacetId f, const CarriedWitness& q, const Vec3& centre, double radius) const;
+    /// The direction, a unit vector of the facet's plane, in which the witness's copy lies as seen from v; for the arcs on the balls. The centre
+    /// tells the sides of segments.
+    [[nodiscard]] std::optional<Vec3> direction_on_facet(FacetId f, VertexId v, const CarriedWitness& q, const Vec3& centre) const;
+
+    [[nodiscard]] std::span<const FacetId> facets_at(VertexId v) const { return at(facet_rows_, facets_, v); }
+    [[nodiscard]] std::span<const SegmentId> segments_at(VertexId v) const { return at(segment_rows_, segments_, v); }
+    /// Facets and segments whose closure contains a point of this carrier.
+    [[nodiscard]] std::span<const FacetId> facets_of(CarrierKind carrier, std::uint32_t id) const;
+    [[nodiscard]] std::span<const SegmentId> segments_of(CarrierKind carrier, std::uint32_t id) const;
+    /// Segments in the closures of both facets.
+    [[nodiscard]] std::span<const SegmentId> shared_segments(FacetId f, FacetId g) const;
+    [[nodiscard]] bool is_on_facet(VertexId input_vertex, FacetId f) const;
+
+private:
+    struct FacetPair {
+        std::uint32_t low = 0, high = 0;
+        auto operator<=>(const FacetPair&) const = default;
+    };
+    template <class T>
+    static std::span<const T> at(const std::vector<std::uint32_t>& rows, const std::vector<T>& items, VertexId v) {
+        return {items.data() + rows[v.index()], items.data() + rows[v.index() + 1]};
+    }
+    void list_incidences();
+    void list_shared_segments();
+    [[nodiscard]] std::optional<Vec3> rotated_about(SegmentId s, FacetId f, const Vec3& q, const Vec3& centre) const;
+    [[nodiscard]] std::optional<Vec3> swung_about(VertexId v, FacetId f, const Vec3& q) const;
+    [[nodiscard]] const Vec3& point(VertexId v) const { return plc_->vertices[v.index()]; }
+
+    const ValidPlc* plc_;
+    bool any_ = false;
+    std::vector<char> acute_;  // input vertices
+    std::vector<double> largest_ball_, ball_;
+    std::optional<LocalFeatureSize> feature_size_;
+    std::vector<std::uint32_t> facet_rows_, segment_rows_;  // compressed rows: what meets at each input vertex
+    std::vector<FacetId> facets_, ids_;                     // ids_[i] = FacetId{i}: spans over single facets
+    std::vector<SegmentId> segments_, segment_ids_;
+    std::vector<FacetPair> pairs_;  // sorted, distinct; pair_rows_ into pair_segments_
+    std::vector<std::uint32_t> pair_rows_;
+    std::vector<SegmentId> pair_segments_;
+};
+
+}  // namespace wellmesh

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Splits where the input is acute: at copies of the encroaching vertex, and on the spheres of the balls about acute vertices
+// (docs/algorithm/acute.md has the rules, the lemmas and why they end).
+#include <algorithm>
+#include <cmath>
+
+#include "conforming/boundary_refiner.hpp"
+#include "conforming/place_point.hpp"
+#include "core/rng.hpp"
+#include "core/vec3_math.hpp"
+
+namespace wellmesh {
+namespace {
+
+/// A copy nearer than this part of the subsegment to one of its ends would make a short piece: the middle does then.
+constexpr double kNearestToEnd = 0.2;
+/// Splits this near to a ball, in its radii, go to its sphere: the piece between would be short.
+constexpr double kSphereReach = 1.3;
+/// An encroaching vertex's projection is a better place than the circumcentre if it keeps this part of the radius from the corners.
+constexpr double kProjectionClearance = 0.3;
+/// Splits for conformity need but little jitter; each bit of it costs vertices on symmetric input.
+constexpr double kConformityJitter = 0.005;
+
+double shortest_side(const Vec3& a, const Vec3& b, const Vec3& c) { return std::sqrt(std::min({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)})); }
+
+}  // namespace
+
+CarriedWitness BoundaryRefiner::witness_of(VertexId v) const {
+    const VertexInfo& i = mesh_.info(v);
+    return {mesh_.point(v), i.carrier, i.carrier_id, i.generation};
+}
+
+/// The vertex nearest to the centre, if it is inside the sphere; else the fallback.
+std::optional<CarriedWitness> BoundaryRefiner::nearest_witness(const Vec3& centre, double radius, TetId near, VertexId fallback) {
+    if (mesh_.triangulation().find_conflict_cavity(centre, near, cavity_)) {
+        const VertexId q = nearest_vertex(mesh_, cavity_);
+        if (q.valid() && squared_distance(mesh_.point(q), centre) < radius * radius * (1 - 1e-12)) return witness_of(q);
+    }
+    if (!fallback.valid()) return std::nullopt;
+    return witness_of(fallback);
+}
+
+VertexId BoundaryRefiner::ball_around(const Cavity& cavity) {
+    if (!acute_.any()) return {};
+    const std::size_t inputs = mesh_.plc().vertices.size();
+    for (const BoundaryFace& b : cavity.boundary)
+        for (const VertexId v : mesh_.tets().face_corners(b.inside)) {
+            if (v.index() >= inputs) continue;
+            const double r = acute_.ball_radius(v);
+            if (squared_distance(mesh_.point(v), cavity.point) < r * r * (1 - 1e-9)) return v;
+        }
+    return {};
+}
+
+/// The corner that is an acute vertex on whose ball's sphere the other two lie.
+VertexId BoundaryRefiner::fan_apex(const std::array<VertexId, 3>& corners) const {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (mesh_.info(corners[(k + 1) % 3]).ball == corners[k] && mesh_.info(corners[(k + 2) % 3]).ball == corners[k]) return corners[k];
+    return {};
+}
+
+Vec3 BoundaryRefiner::at_distance(SegmentId s, VertexId end, double d) const {
+    const auto& ends = mesh_.plc().segments[s.index()].ends;
+    const Vec3 &v = mesh_.point(end), &other = mesh_.point(ends[ends[0] == end ? 1 : 0]);
+    return project_to_segment(mesh_.plc(), s, v + (d / distance(v, other)) * (other - v));
+}
+
+/// Empty: inside a ball, where nothing is split for quality.
+std::optional<BoundaryRefiner::AcutePlace> BoundaryRefiner::place_on_segment(const Subsegment& s, const SplitRequest& request) {
+    const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b), middle = 0.5 * (a + b);
+    const double length = distance(a, b);
+    const auto& ends = mesh_.plc().segments[s.segment.index()].ends;
+    if (!request.for_conformity())
+        for (const VertexId end : ends)
+            if ((s.a == end || s.b == end) && length <= acute_.ball_radius(end) * (1 + 1e-9)) return std::nullopt;
+
+    std::optional<CarriedWitness> q = request.witness;
+    if (!q && request.for_conformity()) q = nearest_witness(middle, length / 2, mesh_.triangulation().tet_of(s.a), request.parent);
+    AcutePlace place;
+    const std::uint64_t key = mix64(seed_, mix64(std::min(s.a, s.b).value(), std::max(s.a, s.b).value()));
+    place.point = project_to_segment(mesh_.plc(), s.segment, middle + (kConformityJitter / 2 * (2 * unit_double(mix64(key, 0)) - 1)) * (b - a));
+    if (q)
+        if (const auto copy = acute_.copy_on_segment(s.segment, *q)) {
+            const Vec3 p = at_distance(s.segment, copy->end, copy->distance);
+            const double along = dot(p - a, b - a) / (length * length);
+            const bool on_sphere = std::abs(copy->distance - acute_.ball_radius(copy->end)) <= 1e-9 * copy->distance;
+            if (along > 0 && along < 1 && (on_sphere || (along >= kNearestToEnd && along <= 1 - kNearestToEnd))) {
+                place.point = p;
+                place.info.copied = true;
+            }
+        }
+    for (const VertexId end : ends) {
+        const double r = acute_.ball_radius(end);
+        if (!(r > 0) || !(squared_distance(place.point, mesh_.point(end)) < kSphereReach * kSphereReach * r * r)) continue;
+        const Vec3 p = at_distance(s.segment, end, r);
+        const double along = dot(p - a, b - a) / (length * length);
+        if (!(along > 1e-6 && along < 1 - 1e-6)) continue;
+        place.point = p;
+        place.info.ball = end;
+    }
+    return place;
+}
+
+BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(const Subsegment& s, const AcutePlace& place, const SplitRequest& request) {
+    const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b);
+    const double radius = distance(a, b) / 2;
+    Triangulation& tri = mesh_.triangulation();
+    VertexInfo info = place.info;
+    info.reason = request.reason;
+    info.parent = request.parent;
+    if (place.point == a || place.point == b || !tri.find_conflict_cavity(place.point, tri.tet_of(s.a), cavity_)) give_up(s);
+    if (refuses(request, radius)) return SplitOutcome::refused;
+    const VertexId v = insert_on_segment(s, info);
+    record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, true, 0.5 * (a + b), radius, s.a, s.b);
+    return SplitOutcome::inserted;
+}
+
+/// A point of the arc between the fan triangle's two corners on the sphere: towards the copy of q if that is between them, else in the middle.
+Vec3 BoundaryRefiner::cut_arc(FacetId f, const std::array<VertexId, 3>& corners, VertexId apex, const std::optional<CarriedWitness>& q) {
+    const std::size_t k = static_cast<std::size_t>(std::find(corners.begin(), corners.end(), apex) - corners.begin());
+    const Vec3 &v = mesh_.point(apex), &a = mesh_.point(corners[(k + 1) % 3]), &b = mesh_.point(corners[(k + 2) % 3]);
+    const double r = acute_.ball_radius(apex);
+    const ValidFacet& facet = mesh_.plc().facets[f.index()];
+    const Vec3 n = cross(a - v, b - v);
+    if (q)
+        if (const auto d = acute_.direction_on_facet(f, apex, *q, (1.0 / 3) * (v + a + b)))
+            if (dot(cross(a - v, *d), n) > 1e-6 * squared_norm(n) / r && dot(cross(*d, b - v), n) > 1e-6 * squared_norm(n) / r) return project_to_facet(facet, v + r * *d);
+    const std::uint64_t key = mix64(seed_, mix64(apex.value(), mix64(corners[(k + 1) % 3].value(), corners[(k + 2) % 3].value())));
+    const Vec3 chord = a + (0.5 + kConformityJitter * (unit_double(key) - 0.5)) * (b - a) - v;
+    return project_to_facet(facet, v + (r / norm(chord)) * chord);
+}
+
+/// Where to split a subface, or a triangle of the facet's own Delaunay triangulation that is no face of the mesh yet.
+BoundaryRefiner::AcutePlace BoundaryRefiner::place_on_facet(FacetId f, const std::array<VertexId, 3>& corners, TetId near, const SplitRequest& request) {
+    const Vec3 &a = mesh_.point(corners[0]), &b = mesh_.point(corners[1]), &c = mesh_.point(corners[2]);
+    const ValidFacet& facet = mesh_.plc().facets[f.index()];
+    double radius = 0;
+    const Vec3 centre = circumcentre(a, b, c, &radius);
+    const auto q = nearest_witness(centre, radius, near, request.reason == InsertionReason::encroachment ? request.parent : VertexId{});
+    AcutePlace place;
+    const auto candidate = [&] { return CarriedWitness{place.point, CarrierKind::facet, f.value()}; };
+    if (const VertexId apex = fan_apex(corners); apex.valid()) {
+        place.point = cut_arc(f, corners, apex, q);
+        place.info.ball = apex;
+        place.witness = candidate();
+        return place;
+    }
+    if (q) {
+        if (const auto copy = acute_.copy_on_facet(f, *q, centre, radius)) {
+            place.point = copy->point;
+            place.info.copied = true;
+            place.info.generation = copy->generation;
+            place.witness = *q;
+            return place;
+        }
+        place.point = project_to_facet(facet, q->point);
+        const double clear = kProjectionClearance * radius;
+        const bool free = std::all_of(corners.begin(), corners.end(), [&](VertexId v) { return squared_distance(mesh_.point(v), place.point) >= clear * clear; });
+        place.witness = candidate();
+        if (free && squared_distance(place.point, centre) < radius * radius) return place;
+    }
+    std::array<VertexId, 3> sorted = corners;
+    std::sort(sorted.begin(), sorted.end());
+    const Vec3 unit = picking_point(2, mix64(seed_, mix64(sorted[0].value(), mix64(sorted[1].value(), sorted[2].value()))), 1);
+    place.point = project_to_facet(facet, centre + (kConformityJitter * radius * unit.x) * facet.axis_u + (kConformityJitter * radius * unit.y) * facet.axis_v);
+    place.witness = candidate();
+    return place;
+}
+
+/// Splits a subface (known: labelled) or a triangle that is no face of the mesh yet; or the subsegments that its point would encroach.
+BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std::array<VertexId, 3>& corners, bool labelled, TetId near, const SplitRequest& request) {
+    AcutePlace place = place_on_facet(f, corners, near, request);
+    const ValidFacet& facet = mesh_.plc().facets[f.index()];
+    const Placement where = Placement::on_facet(f);
+    Triangulation& tri = mesh_.triangulation();
+    const Vec3 a = mesh_.point(corners[0]), b = mesh_.point(corners[1]), c = mesh_.point(corners[2]);
+    const Vec3 middle = project_to_facet(facet, (1.0 / 3) * (a + b + c));
+    const auto found = [&](const Vec3& p) { return std::isfinite(p.x + p.y + p.z) && tri.find_conflict_cavity(p, near, cavity_); };
+    const auto retreat = [&] {  // the middle of the triangle is never outside, nor a vertex
+        place = {};
+        place.witness = {middle, CarrierKind::facet, f.value()};
+        return found(middle);
+    };
+    // A copy within rounding of a vertex would be that vertex once more.
+    if (!found(place.point) || distance_to_nearest(mesh_, cavity_) < 1e-9 * shortest_side(a, b, c))
+        if (!retreat()) return SplitOutcome::gone;
+    if (const VertexId v = ball_around(cavity_); v.valid() && !place.info.ball.valid()) {
+        const Vec3 out = cavity_.point - mesh_.point(v);
+        const Vec3 p = project_to_facet(facet, mesh_.point(v) + (acute_.ball_radius(v) / norm(out)) * out);
+        if (found(p)) place.info.ball = v;
+        else if (!retreat()) return SplitOutcome::gone;
+    }
+    find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+    if (!encroached_segments_.empty()) {
+        const std::vector<Subsegment> targets = encroached_segments_;
+        SplitRequest passed = request;
+        passed.witness = place.witness;
+        for (const Subsegment& target : targets)
+            if (mesh_.find_subsegment(target).valid()) split(target, passed);
+        return SplitOutcome::deferred;
+    }
+    if (labelled && !mesh_.holds_carrier(cavity_, where) && !retreat()) return SplitOutcome::gone;
+    VertexInfo info = place.info;
+    info.reason = request.reason;
+    info.parent = request.parent;
+    const VertexId v = mesh_.insert(cavity_, where, info);
+    inserted(v);
+    record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, true, middle, 0, corners[0], corners[1], corners[2]);
+    return SplitOutcome::inserted;
+}
+
+}  // namespace wellmesh
