@@ -54,8 +54,8 @@ public:
 
     /// Called after every insertion, with the new vertex; the triangulation's new_tets() are still its star.
     std::function<void(VertexId)> on_insert{};
-    /// Called after recovery has found all cells anew (tetrahedra may have changed cells).
-    std::function<void()> on_repair{};
+    /// Called after recovery has found cells anew, with the tetrahedra that may have changed theirs.
+    std::function<void(const std::vector<TetId>&)> on_repair{};
     /// Accepts or rejects a candidate point of a picking region; the first accepted one is used, or the centre. Empty: the centre always.
     /// Given the radius of the element's own sphere. True: the star of this point holds no new small sliver.
     using Judge = std::function<bool(const Cavity&, const Placement&, double radius)>;
@@ -111,6 +111,7 @@ private:
     bool recover_facet(FacetId f);
     void repair_broken();
     void refresh_cells();
+    void find_all_cells();
     void drain_segments();
     void inserted(VertexId v);
     bool refuses(const SplitRequest& request, double radius);
@@ -159,6 +160,9 @@ private:
 
 /// Finds the cell of every tetrahedron by flooding from the labelled faces. @throws MeshError{internal_invariant} if the surface leaks.
 void classify_cells(ConformingMesh& mesh);
+/// The same for live tetrahedra whose cell is unknown, all others keeping theirs. @return false if what surrounds them does not tell, or contradicts
+/// itself: then all must be found again.
+[[nodiscard]] bool classify_again(ConformingMesh& mesh, const std::vector<TetId>& unknown);
 
 /// Distance from cavity.point to the nearest vertex, which is one of the cavity's: nearest neighbours are Delaunay neighbours.
 [[nodiscard]] double distance_to_nearest(const ConformingMesh& mesh, const Cavity& cavity);

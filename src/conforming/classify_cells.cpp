@@ -15,12 +15,53 @@ CellId cell_beside(const ConformingMesh& mesh, TetFace tf, FacetId f, double& su
     const ValidFacet& facet = mesh.plc().facets[f.index()];
     const double along = dot(n, facet.normal);
     sure = std::abs(along) / norm(n);
-    return facet.cells[along > 0 ? 0 : 1];
+    const CellId cell = facet.cells[along > 0 ? 0 : 1];
+    // Facets between two cells that are not meshed are no part of the complex: what is not meshed is all one.
+    return mesh.is_filled(cell) ? cell : CellId{0};
 }
 
 constexpr CellId kUnknown{};
+constexpr double kSure = 0.5;  // cosine: a needle-thin subface may be turned by its rounding; its neighbours decide then
 
 }  // namespace
+
+bool classify_again(ConformingMesh& mesh, const std::vector<TetId>& unknown) {
+    const TetStore& tets = mesh.tets();
+    const CellId none = mesh.unknown_cell();
+    std::vector<TetId> part;
+    for (const TetId seed : unknown) {
+        if (mesh.cell(seed) != none) continue;
+        // One part, connected not across labelled faces; whatever it touches must name the same cell.
+        CellId found{};
+        bool agree = true;
+        const auto hear = [&](CellId c) {
+            agree = agree && (!found.valid() || found == c);
+            found = c;
+        };
+        part.assign(1, seed);
+        mesh.set_cell(seed, kUnknown);
+        for (std::size_t i = 0; i < part.size(); ++i)
+            for (unsigned f = 0; f < 4; ++f) {
+                const FacetId facet = mesh.facet_at(TetFace{part[i], f});
+                if (facet.valid()) {
+                    double sure = 0;
+                    const CellId c = cell_beside(mesh, TetFace{part[i], f}, facet, sure);
+                    if (sure >= kSure) hear(c);
+                    continue;
+                }
+                const TetId next = tets.across(part[i], f).tet();
+                if (mesh.cell(next) == none) {
+                    mesh.set_cell(next, kUnknown);
+                    part.push_back(next);
+                } else if (mesh.cell(next) != kUnknown) {
+                    hear(mesh.cell(next));
+                }
+            }
+        if (!agree || !found.valid()) return false;
+        for (const TetId t : part) mesh.set_cell(t, found);
+    }
+    return true;
+}
 
 void classify_cells(ConformingMesh& mesh) {
     const TetStore& tets = mesh.tets();
@@ -43,7 +84,6 @@ void classify_cells(ConformingMesh& mesh) {
     for (std::size_t i = 0; i < tets.slots(); ++i)
         if (tets.is_live(TetId{i}) && tets.is_ghost(TetId{i})) set(TetId{i}, CellId{0});
     flood();
-    constexpr double kSure = 0.5;  // cosine: a needle-thin subface may be turned by its rounding; its neighbours decide then
     for (const double threshold : {kSure, 0.0})
         for (std::size_t i = 0; i < tets.slots(); ++i) {
             const TetId t{i};

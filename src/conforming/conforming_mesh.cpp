@@ -2,6 +2,7 @@
 #include "conforming/conforming_mesh.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/check.hpp"
 #include "core/vec3_math.hpp"
@@ -47,6 +48,7 @@ ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint
     facet_labelled_.assign(plc.facets.size(), 0);
     records_.emplace_back();  // record 0 means none
     for (const ValidCell& c : plc.cells) filled_.push_back(c.filled ? 1 : 0);
+    filled_.push_back(0);
     fit_arrays();
 }
 
@@ -152,14 +154,45 @@ void ConformingMesh::label_face(TetFace tf, FacetId f) {
         if (f.valid() || has_labels(side.tet())) labels_for_writing(side.tet()).facets[side.face()] = f;
 }
 
-void ConformingMesh::clear_facet(FacetId f) {
-    if (!facet_labelled_[f.index()]) return;  // never recovered yet
-    for (std::size_t i = 0; i < record_.size(); ++i)
-        if (record_[i] != 0)
-            for (FacetId& label : records_[record_[i]].facets)
-                if (label == f) label = FacetId{};
+/// Both sides of every face with the label.
+std::vector<TetFace> ConformingMesh::labelled_faces(FacetId f) {
+    std::vector<TetFace> out;
+    if (!facet_labelled_[f.index()]) return out;  // never recovered yet
+    std::vector<VertexId> on = plc_->facets[f.index()].vertices;
+    for (const VertexId v : steiner_vertices_of(f)) on.push_back(v);
+    std::vector<TetId> star;
+    for (const VertexId v : on) {
+        tri_.find_star(v, star);
+        for (const TetId t : star)
+            if (has_labels(t))
+                for (unsigned k = 0; k < 4; ++k)
+                    if (labels(t).facets[k] == f) out.emplace_back(t, k);
+    }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
 }
 
+void ConformingMesh::relabel_facet(FacetId f, const std::vector<TetFace>& faces) {
+    const std::vector<TetFace> before = labelled_faces(f);
+    std::vector<TetFace> after;
+    for (const TetFace tf : faces)
+        for (const TetFace side : {tf, tri_.tets().across(tf)}) after.push_back(side);
+    std::sort(after.begin(), after.end());
+    std::vector<TetFace> changed;
+    std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(changed));
+    for (const TetFace tf : changed) labels_for_writing(tf.tet()).facets[tf.face()] = FacetId{};
+    const std::size_t lost = changed.size();
+    std::set_difference(after.begin(), after.end(), before.begin(), before.end(), std::back_inserter(changed));
+    for (std::size_t i = lost; i < changed.size(); ++i) labels_for_writing(changed[i].tet()).facets[changed[i].face()] = f;
+    for (const TetFace tf : changed) forget_cell(tf.tet());
+    facet_labelled_[f.index()] = 1;
+}
+
+void ConformingMesh::forget_cell(TetId t) {
+    cell_[t.index()] = tri_.tets().is_ghost(t) ? CellId{0} : unknown_cell();
+    forgotten_.push_back(t);
+}
 
 TetId ConformingMesh::find_subsegment(const Subsegment& s) {
     if (!tri_.is_inserted(s.a) || !tri_.is_inserted(s.b)) return {};

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/ids.hpp"
@@ -129,8 +130,16 @@ public:
     // --- labels, for recovery
     void label_edge(VertexId a, VertexId b, SegmentId s);  ///< on all tetrahedra around the edge; an invalid s takes the label away. Does nothing if there is no such edge
     void label_face(TetFace tf, FacetId f);                ///< on both sides; an invalid f takes the label away
-    void clear_facet(FacetId f);                           ///< takes all labels of f away, O(boundary)
+    /// Labels these faces as f's, and no others. Where that changes anything the cells on both sides become unknown.
+    void relabel_facet(FacetId f, const std::vector<TetFace>& faces);
     void set_cell(TetId t, CellId c) { cell_[t.index()] = c; }
+
+    // --- cells that a broken surface let leak: tetrahedra that were made next to it, or that its repair may have moved to the other side
+    /// The cell of tetrahedra of which nothing is known; not in the domain.
+    [[nodiscard]] CellId unknown_cell() const { return CellId{filled_.size() - 1}; }
+    void forget_cell(TetId t);
+    /// Tetrahedra whose cells were forgotten since the last call, some of which may be gone.
+    [[nodiscard]] std::vector<TetId> take_forgotten() { return std::exchange(forgotten_, {}); }
 
     /// Inserts cavity.point and notes its insertion length. Labels and cells follow; constraints that the point destroys without lying on them are noted as broken.
     VertexId insert(const Cavity& cavity, const Placement& where, const VertexInfo& info);
@@ -192,7 +201,8 @@ private:
     void commit(VertexId v, const Cavity& cavity, const Placement& where);
     void restore(const Snapshot& snapshot);
     void plan(const Cavity& cavity, const Placement& where);
-    void note_destroyed(const Placement& where);
+    bool note_destroyed(const Placement& where);
+    [[nodiscard]] std::vector<TetFace> labelled_faces(FacetId f);
     TetLabels& labels_for_writing(TetId t);
     void drop_labels(TetId t);
     void fit_arrays();
@@ -206,10 +216,11 @@ private:
     std::vector<std::uint32_t> record_;  // index into records_; 0: no labels
     std::vector<TetLabels> records_;
     std::vector<std::uint32_t> free_records_;
-    std::vector<char> filled_;
+    std::vector<char> filled_;  // of each cell; the last entry is the unknown cell's
     std::vector<std::vector<VertexId>> on_facet_;    // Steiner vertices ever inserted on each facet,
     std::vector<std::vector<VertexId>> on_segment_;  // and on each segment
     std::vector<char> facet_labelled_;
+    std::vector<TetId> forgotten_;
     std::vector<FacetId> broken_facets_;
     std::vector<SegmentId> broken_segments_;
 

@@ -154,7 +154,9 @@ bool ConformingMesh::holds_carrier(const Cavity& cavity, const Placement& where)
     return false;
 }
 
-void ConformingMesh::note_destroyed(const Placement& where) {
+/// @return whether anything is.
+bool ConformingMesh::note_destroyed(const Placement& where) {
+    const std::size_t before = broken_facets_.size() + broken_segments_.size();
     for (const InteriorFace& f : interior_)
         if (!f.used && f.boundary == InteriorFace::kNotOnBoundary) broken_facets_.push_back(f.facet);
     for (const Subsegment& s : interior_segments_)
@@ -168,6 +170,7 @@ void ConformingMesh::note_destroyed(const Placement& where) {
         };
         if (std::none_of(captured_.begin(), captured_.end(), at_edge)) broken_facets_.push_back(e.facet);
     }
+    return broken_facets_.size() + broken_segments_.size() != before;
 }
 
 /// Reads everything that the insertion needs to know about the cavity, and finds how the surface will run.
@@ -192,7 +195,7 @@ bool ConformingMesh::would_break(const Cavity& cavity, const Placement& where) {
 
 void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& where) {
     plan(cavity, where);
-    note_destroyed(where);
+    const bool leaks = note_destroyed(where);
     const bool splits = where.carrier == CarrierKind::segment;
     for (const TetId t : cavity.tets) drop_labels(t);
 
@@ -226,6 +229,8 @@ void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& w
                 if (other < 4) labels_for_writing(t).segments[kEdgeOf[at][other]] = SegmentId{where.carrier_id};
             }
     }
+    for (const TetId t : fresh)
+        if (leaks || cell_[t.index()] == unknown_cell()) forget_cell(t);
     if (splits) label_edge(where.a, where.b, SegmentId{});  // it may have survived on the hull, an ulp away from the new vertex
 }
 

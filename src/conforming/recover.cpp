@@ -44,8 +44,7 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
         FacetDelaunay flat(mesh_, f);
         const std::vector<FacetDelaunay::Missing> missing = flat.match_faces(mesh_);
         if (missing.empty()) {
-            mesh_.clear_facet(f);
-            for (const TetFace tf : flat.faces()) mesh_.label_face(tf, f);
+            mesh_.relabel_facet(f, flat.faces());
             return round == 0;
         }
         std::vector<Vec3> taken;
@@ -101,9 +100,27 @@ void BoundaryRefiner::repair_broken() {
 /// Once everything is recovered: cells may have leaked through what was broken.
 void BoundaryRefiner::refresh_cells() {
     cells_stale_ = false;
+    std::vector<TetId> forgotten = mesh_.take_forgotten();
+    std::sort(forgotten.begin(), forgotten.end());
+    forgotten.erase(std::unique(forgotten.begin(), forgotten.end()), forgotten.end());
+    std::erase_if(forgotten, [&](TetId t) { return !mesh_.tets().is_live(t); });
+    if (!classify_again(mesh_, forgotten)) {
+        find_all_cells();
+        return;
+    }
+    enqueue_encroached(forgotten);
+    if (on_repair) on_repair(forgotten);
+}
+
+void BoundaryRefiner::find_all_cells() {
+    cells_stale_ = false;
+    (void)mesh_.take_forgotten();
     classify_cells(mesh_);
-    enqueue_all_encroached();
-    if (on_repair) on_repair();
+    std::vector<TetId> all;
+    for (std::size_t i = 0; i < mesh_.tets().slots(); ++i)
+        if (mesh_.tets().is_live(TetId{i})) all.push_back(TetId{i});
+    enqueue_encroached(all);
+    if (on_repair) on_repair(all);
 }
 
 void BoundaryRefiner::recover_all() {
@@ -117,7 +134,7 @@ void BoundaryRefiner::recover_all() {
         todo = mesh_.take_broken_facets();
     }
     faces_.clear();
-    refresh_cells();
+    find_all_cells();
 }
 
 }  // namespace wellmesh

@@ -30,7 +30,7 @@ public:
     [[nodiscard]] constexpr TetId tet() const { return TetId{packed_ >> 2}; }
     [[nodiscard]] constexpr unsigned face() const { return packed_ & 3U; }
     [[nodiscard]] constexpr bool valid() const { return packed_ != kNone; }
-    friend constexpr bool operator==(TetFace, TetFace) = default;
+    friend constexpr auto operator<=>(TetFace, TetFace) = default;
 
 private:
     static constexpr std::uint32_t kNone = 0xffffffffU;

@@ -29,7 +29,7 @@ Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guar
     for (const Vec3& p : mesh.plc().vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     rounding_ = 64 * largest * 0x1p-53;  // heights of a few ulp
     boundary_.on_insert = [this](VertexId) { enqueue(mesh_.triangulation().new_tets()); };
-    boundary_.on_repair = [this] { enqueue_all(); };
+    boundary_.on_repair = [this](const std::vector<TetId>& tets) { enqueue(tets); };
     boundary_.judge = [this](const Cavity& cavity, const Placement& where, double radius) { return !judging_ || accepts(cavity, where, radius); };
 }
 
