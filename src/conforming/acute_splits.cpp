@@ -32,7 +32,7 @@ CarriedWitness BoundaryRefiner::witness_of(VertexId v) const {
 
 /// The vertex nearest to the centre, if it is inside the sphere; else the fallback.
 std::optional<CarriedWitness> BoundaryRefiner::nearest_witness(const Vec3& centre, double radius, TetId near, VertexId fallback) {
-    if (mesh_.triangulation().find_conflict_cavity(centre, near, cavity_)) {
+    if (in_exact_range(flush_to_exact_range(centre)) && mesh_.triangulation().find_conflict_cavity(flush_to_exact_range(centre), near, cavity_)) {
         const VertexId q = nearest_vertex(mesh_, cavity_);
         if (q.valid() && squared_distance(mesh_.point(q), centre) < radius * radius * (1 - 1e-12)) return witness_of(q);
     }
@@ -175,7 +175,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std:
     Triangulation& tri = mesh_.triangulation();
     const Vec3 a = mesh_.point(corners[0]), b = mesh_.point(corners[1]), c = mesh_.point(corners[2]);
     const Vec3 middle = project_to_facet(facet, (1.0 / 3) * (a + b + c));
-    const auto found = [&](const Vec3& p) { return std::isfinite(p.x + p.y + p.z) && tri.find_conflict_cavity(p, near, cavity_); };
+    const auto found = [&](const Vec3& p) { return tri.in_box(p) && tri.find_conflict_cavity(p, near, cavity_); };
     const auto retreat = [&] {  // the middle of the triangle is never outside, nor a vertex
         place = {};
         place.witness = {middle, CarrierKind::facet, f.value()};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The conflict test and the search for the cavity of a point, without changing anything.
 #include <limits>
+#include <utility>
 
 #include "delaunay/triangulation.hpp"
 
@@ -34,6 +35,17 @@ bool Triangulation::in_conflict(TetId t, const Vec3& p) const {
 }
 
 bool Triangulation::find_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity) {
+    if (!in_box(p)) {  // the filter's bounds do not hold: do without it
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        const PredicateFilter kept = std::exchange(filter_, PredicateFilter(Vec3{kInfinity, kInfinity, kInfinity}));
+        const bool found = search_conflict_cavity(p, near, cavity);
+        filter_ = kept;
+        return found;
+    }
+    return search_conflict_cavity(p, near, cavity);
+}
+
+bool Triangulation::search_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity) {
     const TetId seed = locate(p, near);
     for (const VertexId v : tets_.corners(seed))
         if (v != kInfiniteVertex && point(v) == p) {

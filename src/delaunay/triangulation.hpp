@@ -51,7 +51,11 @@ class Triangulation {
 public:
     Triangulation() = default;
     /// @param lo, hi  box of all points that will ever be inserted: the static filter is valid there only.
-    Triangulation(const Vec3& lo, const Vec3& hi) : filter_(Vec3{hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}) {}
+    Triangulation(const Vec3& lo, const Vec3& hi) : filter_(Vec3{hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}), low_(lo), high_(hi) {}
+    /// Is p in the box of all points that may be inserted? Others may be searched for, more slowly.
+    [[nodiscard]] bool in_box(const Vec3& p) const {
+        return low_.x <= p.x && p.x <= high_.x && low_.y <= p.y && p.y <= high_.y && low_.z <= p.z && p.z <= high_.z;
+    }
 
     /// Starts from four vertices that are not coplanar (ids), already added by add_point.
     void start(VertexId a, VertexId b, VertexId c, VertexId d);
@@ -126,6 +130,7 @@ private:
     TetId create_tet(std::size_t recycled, const std::vector<TetId>& pool);
     void ensure_marks();
     void next_epoch();
+    bool search_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity);
     [[nodiscard]] bool ghost_in_conflict(TetId t, const Vec3& p) const;
     bool insert_in_order(std::span<const std::uint32_t> order);
     /// Numbers for the vertices of one cavity or hole: forgets all but infinity, which is 0; there is room for `most` more.
@@ -146,6 +151,7 @@ private:
 
     TetStore tets_;
     PredicateFilter filter_;
+    Vec3 low_{}, high_{};
     std::vector<Vertex> vertices_;
     std::size_t duplicates_ = 0;
 
