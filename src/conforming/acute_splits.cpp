@@ -18,8 +18,14 @@ constexpr double kNearestToEnd = 0.2;
 constexpr double kSphereReach = 1.3;
 /// An encroaching vertex's projection is a better place than the circumcentre if it keeps this part of the radius from the corners.
 constexpr double kProjectionClearance = 0.3;
+constexpr double kProjectionDepth = 0.95;  // of the radius: what encroaches by rounding only may project to anywhere on the rim
 /// Splits for conformity need but little jitter; each bit of it costs vertices on symmetric input.
 constexpr double kConformityJitter = 0.005;
+
+/// Within this part of the radius of a Gabriel subface's sphere its facet goes on, up to subsegments that are encroached.
+constexpr double kSurelyInside = 0.99;
+/// Only subsegments longer than a few of a point's heights over them are told from others that face away.
+constexpr double kOutlineReach = 0.1;
 
 double shortest_side(const Vec3& a, const Vec3& b, const Vec3& c) { return std::sqrt(std::min({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)})); }
 
@@ -157,7 +163,7 @@ BoundaryRefiner::AcutePlace BoundaryRefiner::place_on_facet(FacetId f, const std
         const double clear = kProjectionClearance * radius;
         const bool free = std::all_of(corners.begin(), corners.end(), [&](VertexId v) { return squared_distance(mesh_.point(v), place.point) >= clear * clear; });
         place.witness = candidate();
-        if (free && squared_distance(place.point, centre) < radius * radius) return place;
+        if (free && squared_distance(place.point, centre) < kProjectionDepth * kProjectionDepth * radius * radius) return place;
     }
     std::array<VertexId, 3> sorted = corners;
     std::sort(sorted.begin(), sorted.end());
@@ -165,6 +171,66 @@ BoundaryRefiner::AcutePlace BoundaryRefiner::place_on_facet(FacetId f, const std
     place.point = project_to_facet(facet, centre + (kConformityJitter * radius * unit.x) * facet.axis_u + (kConformityJitter * radius * unit.y) * facet.axis_v);
     place.witness = candidate();
     return place;
+}
+
+/// A subsegment of the facet that cavity_.point lies on or beyond, within the rounding of the facet; `inside` tells its inner side.
+Subsegment BoundaryRefiner::touched_outline(FacetId f, const Vec3& inside) const {
+    const ValidFacet& facet = mesh_.plc().facets[f.index()];
+    const TetStore& tets = mesh_.tets();
+    for (const TetId t : cavity_.tets) {
+        if (!mesh_.has_labels(t)) continue;
+        for (unsigned e = 0; e < 6; ++e) {
+            const SegmentId s = mesh_.labels(t).segments[e];
+            if (!s.valid() || !std::binary_search(facet.segments.begin(), facet.segments.end(), s)) continue;
+            const VertexId a = tets.corner(t, kEdgeCorners[e][0]), b = tets.corner(t, kEdgeCorners[e][1]);
+            const Vec3 along = mesh_.point(b) - mesh_.point(a), across = cross(facet.normal, along), off = cavity_.point - mesh_.point(a);
+            const double foot = dot(off, along) / squared_norm(along);
+            if (!(foot > 0 && foot < 1)) continue;
+            const double length = norm(across), height = dot(off, across) / length, inner = dot(inside - mesh_.point(a), across);
+            // Sixteen roundings: of the ends, of the point and of its projection.
+            if ((inner > 0 ? height : -height) < 16 * facet.tolerance && std::abs(height) < kOutlineReach * length) return {a, b, s};
+        }
+    }
+    return {};
+}
+
+/// The subsegment of the facet that the way from p, inside, to q crosses first; an invalid one if q is inside, too. Rounding and facets that are
+/// not recovered yet put points where they do not belong.
+Subsegment BoundaryRefiner::first_crossed(FacetId f, const Vec3& p, const Vec3& q) {
+    const ValidFacet& facet = mesh_.plc().facets[f.index()];
+    const auto flat = [&](const Vec3& x) { return facet_coordinates(facet, x); };
+    const auto turn = [](const auto& a, const auto& b, const auto& c) { return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); };
+    const auto from = flat(p), to = flat(q);
+    double first = 1;
+    SegmentId crossed{};
+    for (const SegmentId s : facet.segments) {
+        const auto& ends = mesh_.plc().segments[s.index()].ends;
+        const auto a = flat(mesh_.point(ends[0])), b = flat(mesh_.point(ends[1]));
+        const double left = turn(from, to, a), right = turn(from, to, b), start = turn(a, b, from), stop = turn(a, b, to);
+        if ((left > 0) == (right > 0) || (start > 0) == (stop > 0)) continue;
+        const double at = start / (start - stop);
+        if (at > first || (at == first && crossed.valid())) continue;
+        first = at;
+        crossed = s;
+    }
+    if (!crossed.valid()) return {};
+    const auto& ends = mesh_.plc().segments[crossed.index()].ends;
+    const Vec3 &a = mesh_.point(ends[0]), &b = mesh_.point(ends[1]), at = p + first * (q - p);
+    const auto along = [&](const Vec3& x) { return dot(x - a, b - a); };
+    Subsegment piece{ends[0], ends[1], crossed};
+    double low = 0, high = along(b);
+    const double here = along(at);
+    for (const VertexId v : mesh_.steiner_vertices_of(crossed)) {
+        const double x = along(mesh_.point(v));
+        if (x <= here && x > low) {
+            low = x;
+            piece.a = v;
+        } else if (x > here && x < high) {
+            high = x;
+            piece.b = v;
+        }
+    }
+    return piece;
 }
 
 /// Splits a subface (known: labelled) or a triangle that is no face of the mesh yet; or the subsegments that its point would encroach.
@@ -191,6 +257,16 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std:
         else if (!retreat()) return SplitOutcome::gone;
     }
     find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+    if (encroached_segments_.empty()) {
+        Subsegment piece = touched_outline(f, middle);
+        const bool at_rim = [&] {
+            double radius = 0;
+            const Vec3 centre = circumcentre(a, b, c, &radius);
+            return !(squared_distance(cavity_.point, centre) < kSurelyInside * kSurelyInside * radius * radius);
+        }();
+        if (!piece.segment.valid() && (!labelled || at_rim)) piece = first_crossed(f, middle, cavity_.point);
+        if (piece.segment.valid()) encroached_segments_.push_back(piece);
+    }
     if (!encroached_segments_.empty()) {
         const std::vector<Subsegment> targets = encroached_segments_;
         SplitRequest passed = request;

@@ -139,6 +139,8 @@ private:
     [[nodiscard]] VertexId fan_apex(const std::array<VertexId, 3>& corners) const;
     [[nodiscard]] Vec3 cut_arc(FacetId f, const std::array<VertexId, 3>& corners, VertexId apex, const std::optional<CarriedWitness>& q);
     [[nodiscard]] Vec3 at_distance(SegmentId s, VertexId end, double d) const;
+    [[nodiscard]] Subsegment touched_outline(FacetId f, const Vec3& inside) const;
+    [[nodiscard]] Subsegment first_crossed(FacetId f, const Vec3& p, const Vec3& q);
     VertexId insert_on_segment(const Subsegment& s, const VertexInfo& info);
     [[noreturn]] void give_up(const Subsegment& s) const;
     SplitOutcome split_acute(const Subsegment& s, const AcutePlace& place, const SplitRequest& request);
