@@ -98,7 +98,7 @@ private:
     void fill(const ValidPlc& valid) {
         ConformingMesh mesh = timed(Stage::delaunay, [&] { return start(valid); });
         const bool acute = !valid.acute_features.empty();
-        if (acute) guard_.set_ceiling(10 * mesh.vertex_count() + 20'000);
+        if (acute) guard_.set_ceiling(100 * mesh.vertex_count() + 1'000'000);
         AcuteGeometry acute_geometry(valid);
         BoundaryRefiner boundary(mesh, guard_, options_.seed, acute_geometry);
         const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);
