@@ -253,6 +253,7 @@ VertexId ConformingMesh::insert(const Cavity& cavity, const Placement& where, co
 }
 
 void ConformingMesh::reinsert(VertexId v, const Cavity& cavity, const Placement& where) {
+    if (point(v) != cavity.point) info_[v.index()].ball = VertexId{};
     tri_.set_point(v, cavity.point);
     ++vertex_count_;
     commit(v, cavity, where);

@@ -24,7 +24,7 @@ constexpr double kFlatVolume = 1e-10;  // of the cubed longest edge: dihedral an
 }  // namespace
 
 Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options)
-    : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(cell_sizes(mesh.plc(), options.size)), max_radius_edge_(options.quality.max_radius_edge_ratio) {
+    : mesh_(mesh), boundary_(boundary), guard_(guard), exemptions_(mesh, boundary.acute()), sizes_(cell_sizes(mesh.plc(), options.size)), max_radius_edge_(options.quality.max_radius_edge_ratio) {
     double largest = 0;
     for (const Vec3& p : mesh.plc().vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     rounding_ = 64 * largest * 0x1p-53;  // heights of a few ulp
@@ -114,7 +114,9 @@ void Refiner::enqueue(const std::vector<TetId>& tets) {
     for (const TetId t : tets) {
         if (!mesh_.in_domain(t) || mesh_.tets().is_ghost(t)) continue;
         double badness = 0;
-        switch (classify(t, badness)) {
+        const Fault fault = classify(t, badness);
+        if (is_forced(t, fault)) continue;
+        switch (fault) {
             case Fault::none: break;
             case Fault::size: by_size_.push(t, mesh_.tets().corners(t), badness); break;
             case Fault::radius_edge:
@@ -204,6 +206,11 @@ VertexId Refiner::responsible_vertex(TetId t, InsertionReason reason) const {
     return younger;
 }
 
+/// An edge that an acute angle of the input made short would be made anew, and shorter.
+bool Refiner::is_forced(TetId t, Fault fault) const {
+    return (fault == Fault::radius_edge || fault == Fault::flat) && exemptions_.forces_shortest_edge(t);
+}
+
 bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, InsertionReason reason) {
     const CellId cell = mesh_.cell(t);
     const Placement where = Placement::in_cell(cell);
@@ -219,7 +226,7 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
             const Vec3 p = flush_to_exact_range(centre + boundary_.rules.region(radius) * picking_point(3, key, k));
             ++statistics_.candidates;
             if (!tri.find_conflict_cavity(p, t, cavity_) || mesh_.cell(cavity_.tets[0]) != cell) continue;
-            if (!accepts(cavity_, where, radius)) continue;
+            if (!accepts(cavity_, where, radius) || boundary_.ball_around(cavity_).valid()) continue;
             boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
             sliver_free = encroached_segments_.empty() && encroached_faces_.empty();
         }
@@ -228,6 +235,7 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
             if (!tri.find_conflict_cavity(centre, t, cavity_)) return false;
         }
     }
+    if (boundary_.ball_around(cavity_).valid()) return false;
     if (reason != InsertionReason::size) {
         const double allowed = boundary_.shortest_allowed(boundary_.reference_edge);
         // The sphere is empty, so the first comparison settles nearly all.
@@ -370,7 +378,7 @@ RunGuard::Verdict Refiner::drain() {
         if (!mesh_.in_domain(e.tet)) continue;
         double badness = 0;
         const Fault fault = classify(e.tet, badness);
-        if (fault == Fault::none) continue;
+        if (fault == Fault::none || is_forced(e.tet, fault)) continue;
         const std::size_t vertices_before = mesh_.vertex_count();
         if (fault == Fault::flat) split_flat(e.tet);
         else process(e.tet, fault == Fault::size ? InsertionReason::size : fault == Fault::sliver ? InsertionReason::sliver : InsertionReason::radius_edge);

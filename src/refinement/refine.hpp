@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "conforming/acute_exemptions.hpp"
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
@@ -43,6 +44,7 @@ public:
 
     enum class Fault : std::uint8_t { none, size, radius_edge, flat, sliver };
     [[nodiscard]] Fault classify(TetId t, double& squared_badness) const;
+    [[nodiscard]] const AcuteExemptions& exemptions() const { return exemptions_; }
     [[nodiscard]] const RefineStatistics& statistics() const { return statistics_; }
     [[nodiscard]] const std::vector<CellSize>& sizes() const { return sizes_; }
     /// Sets the guard of Theorem 4.2: no edge below its bound is made for quality. The reference is the shortest edge of the mesh as it is now,
@@ -74,11 +76,13 @@ private:
     void report_milestones();
     [[nodiscard]] std::size_t more_urgent(InsertionReason reason) const;
     [[nodiscard]] VertexId responsible_vertex(TetId t, InsertionReason reason) const;
+    [[nodiscard]] bool is_forced(TetId t, Fault fault) const;
     bool insert_in_cell(TetId t, const Vec3& centre, double radius, InsertionReason reason);
 
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
+    AcuteExemptions exemptions_;
     std::vector<CellSize> sizes_;
     double max_radius_edge_;
     std::optional<SliverRule> sliver_rule_{};
