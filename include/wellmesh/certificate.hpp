@@ -48,6 +48,7 @@ struct RegionVolume {
 struct Certificate {
     std::vector<Claim> claims;
     ShapeStatistics all, interior, boundary;  ///< boundary: at least one vertex on a constraint triangle
+    ShapeStatistics unexempt;                 ///< all but the exempt ones: what the bounds are held against
     std::vector<RegionVolume> regions;
     [[nodiscard]] bool proven() const {  ///< no claim is refuted; some may be not checked
         for (const Claim& c : claims)
@@ -68,6 +69,8 @@ struct CertifyOptions {
     std::optional<double> min_dihedral_boundary_deg{}, min_sigma_boundary{};
     double tolerance = 1e-9;        ///< how far a subface may leave the PLC, relative to the PLC's diagonal
     double flat_angle_rad = 1e-6;   ///< two constraint triangles that bend less than this make no segment
+    /// Tetrahedra, numbers from 0, ascending, for which no bound on shape holds. Each must have two vertices on constraint triangles.
+    std::vector<std::uint64_t> exempt{};
     std::stop_token stop{};         ///< polled between claims: the ones not reached stay `not_checked`
 };
 

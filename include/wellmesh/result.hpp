@@ -8,6 +8,7 @@
 
 #include "wellmesh/certificate.hpp"
 #include "wellmesh/error.hpp"
+#include "wellmesh/exemption.hpp"
 #include "wellmesh/invariants.hpp"
 #include "wellmesh/tet_mesh.hpp"
 
@@ -66,6 +67,8 @@ struct MeshResult {
     Certificate certificate;
     MeshStatistics statistics;
     std::vector<AskedAchieved> goals;
+    /// Tetrahedra that miss a goal for their shape because the input's acute angles force them to, ascending; goals and certificate leave them out.
+    std::vector<Exemption> exemptions;
     std::optional<InvariantReport> invariants{};  ///< if MeshOptions ask for it
 };
 

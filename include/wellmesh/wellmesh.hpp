@@ -6,6 +6,7 @@
 #include "wellmesh/delaunay.hpp"
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/error.hpp"
+#include "wellmesh/exemption.hpp"
 #include "wellmesh/generate.hpp"
 #include "wellmesh/improve.hpp"
 #include "wellmesh/invariants.hpp"

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -33,12 +34,19 @@ struct Bound {
     }
 };
 
-template <class Look>
-void measure(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, Certificate& certificate, Look&& look) {
+std::vector<bool> vertices_on(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles) {
     std::vector<bool> on_constraint(mesh.vertex_count(), false);
     for (const ConstraintTriangle& t : triangles)
         for (const std::uint32_t v : t.v) on_constraint[v] = true;
-    ShapeAccumulator all, interior, boundary;
+    return on_constraint;
+}
+
+/// @param exempt  ascending.
+template <class Look>
+void measure(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<std::uint64_t>& exempt, Certificate& certificate, Look&& look) {
+    const std::vector<bool> on_constraint = vertices_on(mesh, triangles);
+    ShapeAccumulator all, interior, boundary, unexempt;
+    auto next_exempt = exempt.begin();
     std::vector<TetClass> classes(mesh.tet_count(), TetClass::left_out);
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         if (!mesh.positive(t)) continue;
@@ -48,18 +56,40 @@ void measure(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& tri
         classes[t] = touches ? TetClass::boundary : TetClass::interior;
         all.add(shape);
         (touches ? boundary : interior).add(shape);
+        while (next_exempt != exempt.end() && *next_exempt < t) ++next_exempt;
+        if (next_exempt != exempt.end() && *next_exempt == t) continue;
+        unexempt.add(shape);
         look(t, shape, touches);
     }
     certificate.all = all.result();
     certificate.interior = interior.result();
     certificate.boundary = boundary.result();
+    certificate.unexempt = unexempt.result();
     measure_edges(mesh.mesh(), classes, certificate.all, certificate.interior, certificate.boundary);
+}
+
+/// What an input angle forces is at the boundary: between two cells of the input.
+Claim claim_exemptions(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<std::uint64_t>& exempt) {
+    ClaimBuilder claim("exemptions", "Every tetrahedron that is exempt from the bounds has two vertices on constraint triangles.");
+    if (exempt.empty()) return claim.undecided("none is exempt");
+    const std::vector<bool> on_constraint = vertices_on(mesh, triangles);
+    claim.checked(exempt.size());
+    for (const std::uint64_t t : exempt) {
+        if (t >= mesh.tet_count()) {
+            claim.violated(EntityKind::tetrahedron, t + 1, Vec3{}, [&] { return fmt::format("there are only {} tetrahedra", mesh.tet_count()); });
+            continue;
+        }
+        const auto& v = mesh.mesh().tets[t];
+        const auto on = std::count_if(v.begin(), v.end(), [&](std::uint32_t c) { return on_constraint[c]; });
+        if (on < 2) claim.violated(EntityKind::tetrahedron, t + 1, mesh.tet_centroid(t), [&] { return fmt::format("{} of its vertices are", on); });
+    }
+    return claim.decided();
 }
 
 }  // namespace
 
 void measure_shapes(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, Certificate& certificate) {
-    measure(mesh, triangles, certificate, [](std::size_t, const TetShape&, bool) {});
+    measure(mesh, triangles, {}, certificate, [](std::size_t, const TetShape&, bool) {});
 }
 
 void append_shape_claims(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, Certificate& certificate) {
@@ -83,14 +113,15 @@ void append_shape_claims(const SuspectMesh& mesh, const std::vector<ConstraintTr
     if (options.min_sigma_boundary)
         bounds.push_back({{"sigma_boundary", "The volume of every tetrahedron at the boundary is at least its own bound times the cube of its shortest edge."},
                           options.min_sigma_boundary, false, &TetShape::sigma, "sigma", &S::min_sigma, Where::boundary});
-    measure(mesh, triangles, certificate, [&](std::size_t t, const TetShape& shape, bool touches_boundary) {
+    measure(mesh, triangles, options.exempt, certificate, [&](std::size_t t, const TetShape& shape, bool touches_boundary) {
         for (Bound& b : bounds) b.look(mesh, t, shape, touches_boundary);
     });
     for (Bound& b : bounds) {
-        const ShapeStatistics& s = b.where == Where::everywhere ? certificate.all : b.where == Where::interior ? certificate.interior : certificate.boundary;
+        const ShapeStatistics& s = b.where == Where::everywhere ? certificate.unexempt : b.where == Where::interior ? certificate.interior : certificate.boundary;
         b.claim.note(fmt::format("{} {:.6g}", b.upper ? "largest" : "smallest", s.*(b.achieved)));
         certificate.claims.push_back(b.limit ? b.claim.decided() : b.claim.undecided("no bound given"));
     }
+    certificate.claims.push_back(claim_exemptions(mesh, triangles, options.exempt));
 }
 
 }  // namespace wellmesh::certifying

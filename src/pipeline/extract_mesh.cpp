@@ -92,19 +92,19 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, InOutput&& in_outpu
 
 }  // namespace
 
-TetMesh extract_mesh(const ConformingMesh& mesh) {
+TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order) {
     TetMesh out;
     const TetStore& tets = mesh.tets();
     const ValidPlc& plc = mesh.plc();
     std::vector<std::uint32_t> number(mesh.vertex_slots(), kUnused);
     const auto in_output = [&](TetId t) { return tets.is_finite(t) && mesh.in_domain(t); };
-    const std::vector<TetId> listed = number_output(mesh, in_output, number, out);
-    const std::size_t count = listed.size();
+    order = number_output(mesh, in_output, number, out);
+    const std::size_t count = order.size();
     out.tets.reserve(count);
     out.tet_regions.reserve(count);
     std::vector<ListedFace> faces;
     std::vector<ListedEdge> edges;
-    for (const TetId t : listed) {
+    for (const TetId t : order) {
         const auto& c = tets.corners(t);
         out.tets.push_back({number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]});
         out.tet_regions.push_back(plc.cells[mesh.cell(t).index()].region);

@@ -7,7 +7,8 @@
 namespace wellmesh {
 
 /// The domain's part of the mesh, vertices renumbered in order of insertion; ghosts, holes and the outside are left behind.
-[[nodiscard]] TetMesh extract_mesh(const ConformingMesh& mesh);
+/// @param order  gets the tetrahedra in the order of the output.
+[[nodiscard]] TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order);
 
 /// Largest angle by which two subfaces of one facet bend in an edge that is no subsegment: 0 but for rounding.
 [[nodiscard]] double largest_bend_rad(const TetMesh& mesh);

@@ -13,6 +13,7 @@
 #include "core/run_guard.hpp"
 #include "exudation/exude.hpp"
 #include "pipeline/extract_mesh.hpp"
+#include "pipeline/list_exemptions.hpp"
 #include "pipeline/report_goals.hpp"
 #include "pipeline/theory_run.hpp"
 #include "predicates/predicates.hpp"
@@ -69,6 +70,7 @@ public:
         bounds.min_dihedral_boundary_deg = options_.quality.min_dihedral_boundary_deg;
         bounds.max_volume = options_.size.max_volume;
         bounds.stop = control_.stop;
+        for (const Exemption& e : result_.exemptions) bounds.exempt.push_back(e.tet);
         if (const double sigma0 = paper_constants(options_).sigma0; sigma0 > 0) bounds.min_sigma = sigma0;
         bounds.min_sigma_boundary = options_.paper.sigma0_boundary;
         const double extent = input_extent(plc_);
@@ -143,7 +145,9 @@ private:
                 count();
             });
         if (!certified && only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
-        result_.mesh = extract_mesh(mesh);
+        std::vector<TetId> order;
+        result_.mesh = extract_mesh(mesh, order);
+        result_.exemptions = list_exemptions(mesh, order, refiner.exemptions(), options_);
         if (verdict == RunGuard::Verdict::go_on && exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {
                 const ExudationReport report = exude(result_.mesh, options_.quality.min_dihedral_angle_deg, exudation_bounds(valid, refiner.sizes()), guard_);
