@@ -49,7 +49,8 @@ class Bench:
         result = run(command, self.arguments.limit)
         cells = {"exit": result.code, "seconds": result.seconds, "command": shlex.join(command)}
         if not os.path.exists(self.mesh):
-            return cells, [f"exit {result.code} after {result.seconds:.1f} s: {result.errors[-200:] or 'killed'}"]
+            reason = result.errors.split("\n")[0]
+            return cells, [f"exit {result.code} after {result.seconds:.1f} s: {reason if len(reason) < 240 else reason[:120] + ' ... ' + reason[-110:] or 'killed'}"]
         statistics = {}
         if os.path.exists(self.report):
             with open(self.report) as stream:
