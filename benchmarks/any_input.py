@@ -36,6 +36,12 @@ def read_json(path):
         return json.load(stream)
 
 
+def first_line(text):
+    """It says what is wrong; more lines list it. The middle of a long one is the least of it."""
+    line = text.split("\n")[0]
+    return line if len(line) < 240 else f"{line[:120]} ... {line[-110:]}"
+
+
 class Models:
     def __init__(self, arguments):
         self.arguments = arguments
@@ -58,8 +64,7 @@ class Models:
         result = self.run(["mesh", model, "-o", mesh, "--quiet", "--json", report, *listed, *self.arguments.option], limit)
         cells = {"exit": result.code, "seconds": result.seconds, "memory": result.memory, "ok": False}
         if not os.path.exists(mesh):
-            # the first line says what is wrong, more lines list it
-            cells["why"] = f"killed after {limit:g} s" if result.code < 0 else result.errors.split("\n")[0][-200:]
+            cells["why"] = f"killed after {limit:g} s" if result.code < 0 else first_line(result.errors)
             return cells
         said = read_json(report).get("statistics", {})
         tolerance, bend = said.get("certificate_tolerance"), said.get("certificate_flat_angle_rad")
@@ -78,10 +83,10 @@ class Models:
     def diagnose(self, model, folder, limit):
         """What the doctor finds: counts of errors by kind."""
         report = os.path.join(folder, "doctor.json")
-        result = self.run(["doctor", model, "--quiet", "--json", report], limit)
+        result = self.run(["doctor", model, "--json", report], limit)
         defects = read_json(report).get("defects") or read_json(report).get("diagnosis", {}).get("defects", [])
         found = Counter(d["kind"] for d in defects if d["severity"] == "error")
-        return {"exit": result.code, "seconds": result.seconds, "memory": result.memory, "errors": dict(found), "why": result.errors.split("\n")[0][-200:]}
+        return {"exit": result.code, "seconds": result.seconds, "memory": result.memory, "errors": dict(found), "why": first_line(result.errors)}
 
     def row(self, entry):
         model = os.path.join(self.arguments.models, entry["file"])
@@ -112,10 +117,10 @@ class Models:
         if not self.repairs:
             return
         repaired, report = os.path.join(folder, "repaired.poly"), os.path.join(folder, "repair.json")
-        result = self.run(["doctor", model, "--repair", repaired, "--quiet", "--json", report], limit)
+        result = self.run(["doctor", model, "--repair", repaired, "--json", report], limit)
         row["repair"] = {"exit": result.code, "seconds": result.seconds, "report": read_json(report).get("repair", {})}
         if not os.path.exists(repaired):
-            row["verdict"] += f"; not repaired: {result.errors.split(chr(10))[0][-200:] or 'no reason given'}"
+            row["verdict"] += f"; not repaired: {first_line(result.errors) or 'no reason given'}"
             row["ok"] = row["ok"] and bool(result.errors)
             return
         row["mesh_of_repaired"] = again = self.mesh(repaired, repaired, folder, limit)
