@@ -4,20 +4,17 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <optional>
 
+#include "core/checkpoint.hpp"
 #include "wellmesh/error.hpp"
 #include "wellmesh/options.hpp"
 #include "wellmesh/run_control.hpp"
 
 namespace wellmesh {
 
-/// Called between pieces of work that nothing could end otherwise; throws to end them. Empty: they never end early.
-using Checkpoint = std::function<void()>;
-inline void pass(const Checkpoint& checkpoint) {
-    if (checkpoint) checkpoint();
-}
+/// The most that a run holds, the certificate included, over what it holds while it refines: measured TODO.
+inline constexpr double kPeakOverRefinement = 1.5;
 
 class RunGuard {
 public:
@@ -36,27 +33,41 @@ public:
         polls_ = 0;
         return look(vertices, tets, unmet);
     }
-    /// The same for work that the mesh can't do without, with the clock looked at each time.
-    /// @param where  what is being worked on, if that is known.
-    /// @throws MeshError{cancelled | budget_exhausted} naming the stage.
-    void require(std::uint64_t vertices, std::uint64_t tets, std::uint64_t unmet, const std::optional<ElementRef>& where = {});
-    /// Before there is a mesh: require() as a checkpoint.
+    /// The same for work without which there is no conforming mesh. Once there has been one (set_conforming), what is begun is finished: only the
+    /// algorithm's own ceiling ends it then, and whoever polls next learns of the user's limits.
+    /// @param where  () -> ElementRef, what is being worked on.
+    /// @throws MeshError{cancelled | budget_exhausted} naming stage and place.
+    template <class Where>
+    void require(std::uint64_t vertices, std::uint64_t tets, std::uint64_t unmet, Where&& where) {
+        const Verdict verdict = poll(vertices, tets, unmet);
+        const bool endless = ceiling_ && vertices >= *ceiling_;
+        if (verdict == Verdict::go_on || (conforming_ && !endless)) return;
+        throw gave_up(endless && conforming_ ? Verdict::out_of_vertices : verdict, vertices, where());
+    }
+    /// For the stages before there is a triangulation: looks at the clock each time and throws as require() does.
     [[nodiscard]] Checkpoint checkpoint();
 
     void enter(Stage stage) { stage_ = stage; }
+    /// The mesh conforms to its input: from now on a run ends with a mesh.
+    void set_conforming() { conforming_ = true; }
     [[nodiscard]] Stage stage() const { return stage_; }
     /// A bound of the algorithm's own, beside the user's.
     void set_ceiling(std::optional<std::uint64_t> vertices) { ceiling_ = vertices; }
     /// Whether a limit that the user set, not the algorithm's own bound, has ended the run.
     [[nodiscard]] bool user_limit_spent() const { return spent_ != Verdict::go_on; }
-    /// Whether so many bytes more would go beyond the limit. What is only nice to have is then left out.
-    [[nodiscard]] bool can_afford(std::uint64_t bytes) const;
+    /// More vertices than the user allows: what a cascade must finish may add some after the last of them.
+    [[nodiscard]] bool has_too_many(std::uint64_t vertices) const { return limits_.max_vertices && vertices > *limits_.max_vertices; }
+    /// So few are left that a cascade might not end within them: hardly any adds as many as these.
+    [[nodiscard]] bool is_nearly_full(std::uint64_t vertices) const { return has_too_many(vertices + 32 + limits_.max_vertices.value_or(0) / 64); }
+    /// Whether there is memory for another copy of all that the process holds: copies that are kept only to fall back on are left out otherwise.
+    [[nodiscard]] bool can_double() const;
 
 private:
     using Clock = std::chrono::steady_clock;
     Verdict look(std::uint64_t vertices, std::uint64_t tets, std::uint64_t unmet);
     [[nodiscard]] Clock::time_point now() const { return control_->clock ? control_->clock() : Clock::now(); }
     [[nodiscard]] std::uint64_t memory() const;
+    [[nodiscard]] MeshError gave_up(Verdict verdict, std::uint64_t vertices, const std::optional<ElementRef>& where) const;
 
     Limits limits_;
     const RunControl* control_;
@@ -65,6 +76,7 @@ private:
     std::optional<std::uint64_t> ceiling_{};
     Verdict spent_ = Verdict::go_on;  // of the user's limits
     Stage stage_ = Stage::read;
+    bool conforming_ = false;
 };
 
 }  // namespace wellmesh
