@@ -15,8 +15,8 @@ import os
 import sys
 import tempfile
 
-from common import DEFAULT_PROGRAM, diagonal, judge, points_of, run
-from real_models import RIGHT_ANGLED, plain_off
+from common import DEFAULT_PROGRAM, diagonal, judge, plain_copy, points_of, run
+from real_models import RIGHT_ANGLED
 from synthetic_domains import Transform, domains, moved, write_poly
 
 
@@ -41,7 +41,7 @@ class Table:
                 return
             invariants = data["invariants"]
             claims = {claim["name"]: claim for claim in invariants["claims"]}
-            verdict = judge(self.arguments.referee, mesh, plain_off(model, folder), 0, tolerance, invariants["rho0"])
+            verdict = judge(self.arguments.referee, mesh, plain_copy(model, folder), 0, tolerance, invariants["rho0"])
             density = max((worst_of(c) for k, c in claims.items() if k.startswith("theorem_5_1") and worst_of(c) is not None), default=0.0)
             edge, growth = worst_of(claims["theorem_4_2"]), worst_of(claims["theorem_5_3"])
             self.add(claims.values())

@@ -53,15 +53,18 @@ def run(command, limit=3600.0):
                    out.read().decode(errors="replace"), err.read().decode(errors="replace").strip())
 
 
-def judge(referee, mesh, plc, min_dihedral=20.0, tolerance=None, max_radius_edge=2.0, compare_with=None):
-    """The referee's verdict, its JSON as a dictionary; `ok` and `failures` always exist.
+def judge(referee, mesh, plc, min_dihedral=20.0, tolerance=None, max_radius_edge=2.0, compare_with=None, exempt=None, flat_angle=None):
+    """The referee's verdict, its JSON as a dictionary; `ok` and `failures` always exist. Bounds of 0 ask for nothing.
 
+    exempt: a file whose lines begin with the numbers of tetrahedra that the two bounds leave out.
     compare_with: the wellmesh program, whose `check` must then agree with the referee claim by claim.
     """
-    options = ["--plc", plc, "--max-radius-edge", f"{max_radius_edge:g}", "--min-dihedral", f"{float(min_dihedral):g}"]
-    if tolerance is not None:
-        options += ["--tolerance", f"{tolerance:g}"]
-    result = subprocess.run([referee, mesh, *options], capture_output=True, text=True)
+    options = ["--plc", plc]
+    for option, value in (("--max-radius-edge", max_radius_edge), ("--min-dihedral", min_dihedral), ("--tolerance", tolerance), ("--flat-angle", flat_angle)):
+        if value is not None and float(value) > 0:
+            options += [option, repr(float(value))]
+    # compared below without exemptions: counts and measured values of all tetrahedra
+    result = subprocess.run([referee, mesh, *options, *(["--exempt", exempt] if exempt else [])], capture_output=True, text=True)
     try:
         verdict = json.loads(result.stdout)
     except ValueError:
@@ -100,34 +103,114 @@ def tetgen(program, switches, model, limit=3600.0):
     return result, points and int(points), tets and int(tets)
 
 
-def points_of(model):
-    """Coordinates in a surface or `.poly` file, read independently of the program."""
+def surface_of(model):
+    """Coordinates and polygons (vertex numbers from 0) of an .off, .obj, .stl or .ply file, read independently of the program.
+
+    STL has no numbers: equal coordinates are one vertex there, as they are for wellmesh.
+    """
     extension = os.path.splitext(model)[1].lower()
     if extension == ".stl":
-        with open(model, "rb") as stream:
-            data = stream.read()
-        n = struct.unpack_from("<I", data, 80)[0] if len(data) >= 84 else 0
-        if len(data) == 84 + 50 * n:
-            for i in range(n):
-                v = struct.unpack_from("<9f", data, 84 + 50 * i + 12)
-                yield from (v[0:3], v[3:6], v[6:9])
-        else:
-            words = data.split()
-            for i, word in enumerate(words):
-                if word == b"vertex":
-                    yield tuple(map(float, words[i + 1:i + 4]))
+        corners, numbers = list(stl_corners(model)), {}
+        indices = [numbers.setdefault(p, len(numbers)) for p in corners]
+        return list(numbers), [indices[i:i + 3] for i in range(0, len(indices), 3)]
+    if extension == ".ply":
+        return ply_surface(model)
+    with open(model, errors="replace") as stream:
+        text = stream.read()
+    if extension == ".obj":
+        lines = [line.split("#")[0].split() for line in text.replace("\\\n", " ").splitlines()]
+        points, polygons = [], []
+        for line in lines:
+            if line and line[0] == "v":
+                points.append(tuple(map(float, line[1:4])))
+            elif line and line[0] == "f":
+                corners = [int(word.split("/")[0]) for word in line[1:]]
+                polygons.append([i - 1 if i > 0 else len(points) + i for i in corners])
+        return points, polygons
+    lines = [line.split("#")[0].split() for line in text.splitlines()]
+    lines = [line for line in lines if line]
+    # a header word, with or without the counts on its line
+    counts = lines[0][1:] or lines[1]
+    vertices, faces = int(counts[0]), int(counts[1])
+    lines = lines[1 if lines[0][1:] else 2:]
+    points = [tuple(map(float, line[:3])) for line in lines[:vertices]]
+    return points, [[int(word) for word in line[1:1 + int(line[0])]] for line in lines[vertices:vertices + faces]]
+
+
+PLY_TYPES = {"char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h", "int16": "h", "ushort": "H", "uint16": "H", "int": "i", "int32": "i",
+             "uint": "I", "uint32": "I", "float": "f", "float32": "f", "double": "d", "float64": "d"}
+
+
+def ply_surface(model):
+    """Of a .ply file whose faces have one list, that of their vertices."""
+    with open(model, "rb") as stream:
+        header, body = stream.read().split(b"end_header\n", 1)
+    lines = [line.split() for line in header.decode().splitlines()]
+    form = next(line[1] for line in lines if line and line[0] == "format")
+    elements = []
+    for line in lines:
+        if line and line[0] == "element":
+            elements.append((line[1], int(line[2]), []))
+        elif line and line[0] == "property":
+            elements[-1][2].append(line[1:])
+    words, place, order = iter(body.split()) if form == "ascii" else None, 0, "<" if form.endswith("little_endian") else ">"
+
+    def value(kind):
+        nonlocal place
+        if words is not None:
+            return float(next(words))
+        code = order + PLY_TYPES[kind]
+        place += struct.calcsize(code)
+        return struct.unpack_from(code, body, place - struct.calcsize(code))[0]
+
+    points, polygons = [], []
+    for name, count, properties in elements:
+        for _ in range(count):
+            row = {p[-1]: [int(value(p[2])) for _ in range(int(value(p[1])))] if p[0] == "list" else value(p[0]) for p in properties}
+            if name == "vertex":
+                points.append((row["x"], row["y"], row["z"]))
+            elif name == "face":
+                polygons.append(next(v for v in row.values() if isinstance(v, list)))
+    return points, polygons
+
+
+def stl_corners(model):
+    """Corners of the triangles, three each."""
+    with open(model, "rb") as stream:
+        data = stream.read()
+    n = struct.unpack_from("<I", data, 80)[0] if len(data) >= 84 else 0
+    if len(data) == 84 + 50 * n:
+        for i in range(n):
+            v = struct.unpack_from("<9f", data, 84 + 50 * i + 12)
+            yield from (v[0:3], v[3:6], v[6:9])
         return
+    words = data.split()
+    for i, word in enumerate(words):
+        if word == b"vertex":
+            yield tuple(map(float, words[i + 1:i + 4]))
+
+
+def plain_copy(model, folder):
+    """The referee and rivals read plain files only: surfaces become OFF without normals, colours, continued lines; .poly and .smesh stay where they are."""
+    if os.path.splitext(model)[1].lower() in (".poly", ".smesh"):
+        return model
+    points, polygons = surface_of(model)
+    copy = os.path.join(folder, "plain.off")
+    with open(copy, "w") as out:
+        out.write(f"OFF\n{len(points)} {len(polygons)} 0\n")
+        out.writelines(" ".join(map(repr, p)) + "\n" for p in points)
+        out.writelines(f"{len(polygon)} {' '.join(map(str, polygon))}\n" for polygon in polygons)
+    return copy
+
+
+def points_of(model):
+    """Coordinates in a surface or `.poly` file."""
+    if os.path.splitext(model)[1].lower() not in (".poly", ".smesh"):
+        return surface_of(model)[0]
     with open(model, errors="replace") as stream:
         lines = [line.split("#")[0].split() for line in stream]
     lines = [line for line in lines if line]
-    if extension == ".off":
-        count = int(lines[1][0])
-        yield from (tuple(map(float, line[:3])) for line in lines[2:2 + count])
-    elif extension in (".poly", ".smesh"):
-        count = int(lines[0][0])
-        yield from (tuple(map(float, line[1:4])) for line in lines[1:1 + count])
-    elif extension == ".obj":
-        yield from (tuple(map(float, line[1:4])) for line in lines if line[0] == "v")
+    return [tuple(map(float, line[1:4])) for line in lines[1:1 + int(lines[0][0])]]
 
 
 def diagonal(points):

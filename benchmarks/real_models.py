@@ -12,29 +12,10 @@ import os
 import sys
 import tempfile
 
-from common import DEFAULT_PROGRAM, diagonal, judge, points_of, run
+from common import DEFAULT_PROGRAM, diagonal, judge, plain_copy, points_of, run
 
 RIGHT_ANGLED = ["plc/bar2.poly", "plc/crux.poly", "cad/u_arch.off", "cad/part1.stl", "multimat/cubes.off", "multimat/eight_cubes.poly",
                 "geosemi/dike_mod.poly", "geosemi/seissol_loh1.poly", "geosemi/gmsh_mos3d.poly"]
-
-
-def plain_off(model, folder):
-    """The referee reads plain OFF only: a copy without normals and colours where the header says that there are some."""
-    if not model.lower().endswith(".off"):
-        return model
-    lines = [line.split("#")[0].split() for line in open(model)]
-    lines = [line for line in lines if line]
-    if lines[0] == ["OFF"]:
-        return model
-    vertices, faces = int(lines[1][0]), int(lines[1][1])
-    copy = os.path.join(folder, "plain.off")
-    with open(copy, "w") as out:
-        out.write(f"OFF\n{vertices} {faces} 0\n")
-        for line in lines[2:2 + vertices]:
-            out.write(" ".join(line[:3]) + "\n")
-        for line in lines[2 + vertices:2 + vertices + faces]:
-            out.write(" ".join(line[:1 + int(line[0])]) + "\n")
-    return copy
 
 
 def main():
@@ -75,7 +56,7 @@ def main():
                     good = False
                     continue
                 tolerance = 1e-7 if name.endswith(".stl") else None
-                verdict = judge(arguments.referee, mesh, plain_off(model, folder), arguments.min_dihedral, tolerance, compare_with=arguments.program if arguments.compare else None)
+                verdict = judge(arguments.referee, mesh, plain_copy(model, folder), arguments.min_dihedral, tolerance, compare_with=arguments.program if arguments.compare else None)
                 if "quality" not in verdict:
                     print(f"{row}  {verdict['failures']}", flush=True)
                     good = False

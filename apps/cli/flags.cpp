@@ -51,6 +51,28 @@ std::uint64_t read_count(const std::string& text, const std::string& flag) {
     return value;
 }
 
+/// Bytes as people type them: 4000000000, 500M, 1.5G, 2GiB.
+std::uint64_t read_bytes(const std::string& text, const std::string& flag) {
+    constexpr std::string_view kUnits = "KMGT";
+    constexpr double kLeast = 1 << 20, kMost = 0x1p60;
+    std::string_view number = text;
+    for (const std::string_view ending : {"iB", "B"})
+        if (number.ends_with(ending)) {
+            number.remove_suffix(ending.size());
+            break;
+        }
+    double unit = 1;
+    if (const std::size_t power = number.empty() ? std::string_view::npos : kUnits.find(static_cast<char>(number.back() & ~0x20)); power != std::string_view::npos) {
+        unit = std::ldexp(1.0, 10 * (static_cast<int>(power) + 1));
+        number.remove_suffix(1);
+    }
+    double value = 0;
+    const bool digits_first = !number.empty() && number.front() >= '0' && number.front() <= '9';
+    if (!digits_first || !CLI::detail::lexical_cast(std::string(number), value) || !(value * unit >= kLeast && value * unit <= kMost))
+        throw CLI::ValidationError(flag, fmt::format("must be between 1M and 1048576T, in bytes or with K, M, G or T after the number, not '{}'", text));
+    return static_cast<std::uint64_t>(value * unit);
+}
+
 std::string lower_extension(const fs::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
@@ -156,6 +178,10 @@ void add_limit_flags(CLI::App& command, MeshOptions& options) {
         "--time-limit", [&options](const std::string& text) { options.limits.time = read_seconds(text, "--time-limit"); },
         "stop refining after this many seconds; the certificate and writing come on top (default: none)")
         ->type_name("SECONDS");
+    command.add_option_function<std::string>(
+        "--max-memory", [&options](const std::string& text) { options.limits.memory_bytes = read_bytes(text, "--max-memory"); },
+        "stop refining before the program holds more than this: bytes, or with K, M, G or T after the number, powers of 1024 (default: none)")
+        ->type_name("SIZE");
 }
 
 void add_seeding_flag(CLI::App& command, MeshOptions& options) {

@@ -35,13 +35,7 @@ void Interrupt::listen() {
         if (signal == SIGUSR2) continue;
         if (cooperative_ == 0) _exit(kInterrupted);
         if (source_.request_stop()) continue;
-        // Asked twice: die of the signal, as if nobody had listened.
-        std::signal(signal, SIG_DFL);
-        sigset_t one;
-        sigemptyset(&one);
-        sigaddset(&one, signal);
-        pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
-        std::raise(signal);
+        _exit(kInterrupted);  // asked twice: whoever waits for a pipe to be read can't be asked to end
     }
 }
 

@@ -13,7 +13,7 @@ namespace wellmesh::cli {
 /// any other thread. Signals that the parent process ignores (nohup, background jobs) stay ignored.
 ///
 /// By default a signal ends the process at once: right while reading and computing without a stop token. While a
-/// `Cooperative` lives, the first signal only requests a stop and the second one kills.
+/// `Cooperative` lives, the first signal only requests a stop and the second one ends it.
 class Interrupt {
 public:
     Interrupt();

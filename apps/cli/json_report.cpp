@@ -66,6 +66,7 @@ Json to_json(const MeshOptions& options) {
     json["max_volume"] = or_null(options.size.max_volume);
     json["max_vertices"] = or_null(options.limits.max_vertices);
     json["time_limit_seconds"] = options.limits.time ? Json(static_cast<double>(options.limits.time->count()) / 1000) : Json(nullptr);
+    json["max_memory_bytes"] = or_null(options.limits.memory_bytes);
     json["coplanar_tolerance"] = or_null(options.coplanar_tolerance);
     json["seed"] = options.seed;
     json["slivers"] = to_string(options.slivers);

@@ -32,6 +32,10 @@ namespace {
 
 void print_error(const MeshError& error) {
     constexpr std::size_t kShown = 20;
+    if (error.code() == ErrorCode::cancelled) {
+        fmt::print(stderr, "wellmesh: {}\n", error.what());
+        return;
+    }
     fmt::print(stderr, "wellmesh: {}: {}\n", to_string(error.code()), error.what());
     const auto& offenders = error.offenders();
     for (std::size_t i = 0; i < std::min(offenders.size(), kShown); ++i) {
@@ -62,7 +66,7 @@ int run_guarded(const Command& command) {
         print_error(error);
         return exit_status(error.code());
     } catch (const std::bad_alloc&) {
-        std::fputs("wellmesh: out of memory; nothing written\n", stderr);
+        std::fputs("wellmesh: budget_exhausted: memory ran out; nothing written\n", stderr);
         return kGaveUp;
     } catch (const std::exception& error) {
         fmt::print(stderr, "wellmesh: internal error: {}; please report it with the input\n", error.what());

@@ -2,12 +2,14 @@
 #include "produce_mesh.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <new>
 
 #include "commands.hpp"
 #include "exit_status.hpp"
@@ -45,6 +47,12 @@ std::string render(const MeshResult& result, const std::vector<StageTime>& stage
     for (const std::string& note : result.statistics.notes) text += "note: " + note + '\n';
     for (const auto& file : files) text += "wrote " + file.string() + '\n';
     return text;
+}
+
+std::vector<std::string> files_named(const std::vector<std::filesystem::path>& files) {
+    std::vector<std::string> names;
+    for (const auto& file : files) names.push_back(file.string());
+    return names;
 }
 
 Json header(const MeshJob& job) {
@@ -86,7 +94,7 @@ int run(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& r
         if (line.enabled()) control.on_progress = [&line](const Progress& progress) { line.show(progress); };
         return make(control);
     }();
-    if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, "interrupted; nothing written");
+    if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, "interrupted in stage write; nothing written");
     stages.insert(stages.end(), result.statistics.stages.begin(), result.statistics.stages.end());
 
     const Stopwatch writing;
@@ -94,14 +102,19 @@ int run(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& r
     WriteOptions write = job.write;
     write.stop = interrupt.token();
     for (const std::string& output : job.outputs) {
-        if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, fmt::format("interrupted before {} was written", output));
+        if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, fmt::format("interrupted in stage write, before {} was written", output));
         const auto written = write_mesh(result.mesh, output, write);
         files.insert(files.end(), written.begin(), written.end());
     }
     if (!files.empty()) stages.push_back({.stage = Stage::write, .seconds = writing.seconds()});
 
     const int status = goals_met(result) ? kGoalsMet : kGoalsUnmet;
-    if (!job.json.empty()) write_json(job.json, report(job, result, stages, files, status));
+    try {
+        if (!job.json.empty()) write_json(job.json, report(job, result, stages, files, status));
+    } catch (const MeshError& e) {
+        if (files.empty()) throw;
+        throw MeshError(e.code(), e.stage(), fmt::format("{}; the mesh is written: {}", e.what(), fmt::join(files_named(files), " ")), e.offenders());
+    }
     if (!job.quiet) print_report(render(result, stages, files), job.json);
     return status;
 }
@@ -127,18 +140,24 @@ int produce_mesh(const MeshJob& job, Interrupt& interrupt, const std::function<v
     std::vector<std::string> others = job.outputs;
     others.insert(others.end(), job.inputs.begin(), job.inputs.end());
     require_report(job.json, others);
+    // Programs that asked for a report get the reason in it, too.
+    const auto report_error = [&](const MeshError& error) {
+        if (job.json.empty() || error.code() == ErrorCode::cannot_write || error.code() == ErrorCode::cancelled) return;
+        Json json = header(job);
+        json["exit_status"] = exit_status(error.code());
+        json["error"] = to_json(error);
+        json["files"] = Json::array();
+        write_json(job.json, json);
+    };
     try {
         return run(job, interrupt, read, make);
     } catch (const MeshError& error) {
-        // Programs that asked for a report get the reason in it, too.
-        if (!job.json.empty() && error.code() != ErrorCode::cannot_write && error.code() != ErrorCode::cancelled) {
-            Json json = header(job);
-            json["exit_status"] = exit_status(error.code());
-            json["error"] = to_json(error);
-            json["files"] = Json::array();
-            write_json(job.json, json);
-        }
+        report_error(error);
         throw;
+    } catch (const std::bad_alloc&) {  // generate() tells its own: this is outside of it
+        const MeshError error(ErrorCode::budget_exhausted, Stage::read, "memory ran out while files were read or written");
+        report_error(error);
+        throw error;
     }
 }
 

@@ -65,7 +65,10 @@ struct SizeGoals {
 
 struct Limits {
     std::optional<std::uint64_t> max_vertices{};  ///< of the whole mesh, input vertices included
+    /// From validation to the end of refinement and shape work; the certificate comes on top.
     std::optional<std::chrono::milliseconds> time{};
+    /// Physical memory of the whole process, the caller's own included. Refinement stops in time for the certificate to fit, too.
+    std::optional<std::uint64_t> memory_bytes{};
 };
 
 /// Vertices from a body-centred cubic lattice inside, where a size is asked for: about a third fewer for the same size.

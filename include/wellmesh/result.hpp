@@ -14,7 +14,7 @@
 
 namespace wellmesh {
 
-enum class Termination { goals_met, goals_unmet, vertex_budget_reached, time_budget_reached, cancelled };
+enum class Termination { goals_met, goals_unmet, vertex_budget_reached, time_budget_reached, memory_budget_reached, cancelled };
 [[nodiscard]] const char* to_string(Termination termination) noexcept;
 
 /// A goal, what was asked, what the mesh has.

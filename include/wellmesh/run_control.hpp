@@ -2,6 +2,7 @@
 // Progress and cancellation.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <stop_token>
@@ -21,6 +22,10 @@ struct RunControl {
     std::function<void(const Progress&)> on_progress{};
     /// Polled at least once per vertex insertion.
     std::stop_token stop{};
+    /// By which Limits::time is measured; empty: the steady clock. Another one makes a run with a time limit repeatable.
+    std::function<std::chrono::steady_clock::time_point()> clock{};
+    /// What Limits::memory_bytes is compared with; empty: the physical memory that the process holds.
+    std::function<std::uint64_t()> resident_bytes{};
 };
 
 }  // namespace wellmesh

@@ -20,19 +20,20 @@ namespace wellmesh {
 namespace {
 
 constexpr Stage kStage = Stage::delaunay;
+constexpr std::uint32_t kBetweenCheckpoints = 1024;  // vertices
 constexpr std::size_t kNamed = 20;  // offenders in one message
 
 class Adopter {
 public:
-    Adopter(const TetMesh& mesh, const ValidPlc& plc, double tolerance, GivenMeshStatistics& statistics)
-        : mesh_(mesh), plc_(plc), tolerance_(tolerance), statistics_(statistics), given_(inspect_given_mesh(mesh)), finder_(plc, tolerance) {}
+    Adopter(const TetMesh& mesh, const ValidPlc& plc, double tolerance, GivenMeshStatistics& statistics, const Checkpoint& checkpoint)
+        : mesh_(mesh), plc_(plc), tolerance_(tolerance), statistics_(statistics), checkpoint_(checkpoint), given_(inspect_given_mesh(mesh)), finder_(plc, tolerance) {}
 
     ConformingMesh adopt() {
         find_carriers();
         refuse_strays();
         refuse_other_volume();
         number_vertices();
-        ConformingMesh conforming(plc_, steiner_);
+        ConformingMesh conforming(plc_, steiner_, checkpoint_);
         count_kept(conforming);
         return conforming;
     }
@@ -53,6 +54,7 @@ private:
     const ValidPlc& plc_;
     double tolerance_;
     GivenMeshStatistics& statistics_;
+    const Checkpoint& checkpoint_;
     GivenMesh given_;
     CarrierFinder finder_;
     Vec3 low_{}, high_{};
@@ -68,6 +70,7 @@ void Adopter::find_carriers() {
     carriers_.resize(mesh_.vertices.size());
     for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) {
         if (!given_.used[v]) continue;
+        if (v % kBetweenCheckpoints == 0) pass(checkpoint_);
         const Vec3 p = mesh_.vertices[v] + Vec3{0, 0, 0};  // minus zero becomes zero
         if (const auto carrier = finder_.find(p, given_.facet_reference[v], given_.segment_reference[v])) {
             carriers_[v] = *carrier;
@@ -226,8 +229,8 @@ double adoption_tolerance(const TetMesh& mesh, const Plc& plc) {
     return std::max(CertifyOptions{}.tolerance * distance(lo, hi), rounding.on_edge());
 }
 
-ConformingMesh adopt_mesh(const TetMesh& mesh, const ValidPlc& plc, double tolerance, GivenMeshStatistics& statistics) {
-    return Adopter(mesh, plc, tolerance, statistics).adopt();
+ConformingMesh adopt_mesh(const TetMesh& mesh, const ValidPlc& plc, double tolerance, GivenMeshStatistics& statistics, const Checkpoint& checkpoint) {
+    return Adopter(mesh, plc, tolerance, statistics, checkpoint).adopt();
 }
 
 void settle_regions(ConformingMesh& mesh) {

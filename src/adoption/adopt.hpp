@@ -17,7 +17,7 @@ namespace wellmesh {
 ///          carrier of vertices off the boundary is any cell: see settle_regions().
 /// @throws MeshError  bad_input, coordinate_range as inspect_given_mesh(); bad_input that names the vertices (from 1) on the hull of the mesh
 ///          that lie on no facet, or the faces of the hull that do not, or the input vertices that are missing, if the volumes differ.
-[[nodiscard]] ConformingMesh adopt_mesh(const TetMesh& mesh, const ValidPlc& plc, double tolerance, GivenMeshStatistics& statistics);
+[[nodiscard]] ConformingMesh adopt_mesh(const TetMesh& mesh, const ValidPlc& plc, double tolerance, GivenMeshStatistics& statistics, const Checkpoint& checkpoint = {});
 
 /// Once the cells of tetrahedra are known: gives vertices off the boundary the cell that they lie in.
 /// @throws MeshError{bad_input}  naming the place, if one lies outside the domain.

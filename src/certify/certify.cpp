@@ -150,20 +150,18 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
     FaceSurvey faces = survey_faces(mesh);
     poll();
     const bool faces_in_order = !broken(positive) && !broken(faces.face_sharing) && !broken(faces.opposite_sides);
-    const Claim disjoint = claim_disjoint(mesh, faces.constraints, faces_in_order);
+    const BallSearch search(mesh.points(), mesh.weights());
+    const Claim disjoint = claim_disjoint(mesh, search, faces.constraints, faces_in_order);
     claims.insert(claims.end(), {positive, faces.face_sharing, faces.opposite_sides, faces.distinct_tets, disjoint, claim_conservation(mesh, faces), distinct, used,
                                  faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh)});
     poll();
-    {
-        const BallSearch search(mesh.points(), mesh.weights());
-        const GabrielFindings subfaces = claim_gabriel_subfaces(mesh, search, faces.constraints);
-        poll();
-        const bool by_faces = faces_in_order && disjoint.state == Claim::State::proven && faces.locally_not_delaunay == 0 && !broken(used) && subfaces.touched_hull_faces == 0;
-        claims.push_back(claim_delaunay(mesh, search, by_faces));
-        claims.push_back(subfaces.claim);
-        poll();
-        claims.push_back(claim_gabriel_subsegments(mesh, search, find_constraint_segments(mesh, faces.constraints, options.flat_angle_rad)));
-    }
+    const GabrielFindings subfaces = claim_gabriel_subfaces(mesh, search, faces.constraints);
+    poll();
+    const bool by_faces = faces_in_order && disjoint.state == Claim::State::proven && faces.locally_not_delaunay == 0 && !broken(used) && subfaces.touched_hull_faces == 0;
+    claims.push_back(claim_delaunay(mesh, search, by_faces));
+    claims.push_back(subfaces.claim);
+    poll();
+    claims.push_back(claim_gabriel_subsegments(mesh, search, find_constraint_segments(mesh, faces.constraints, options.flat_angle_rad)));
     poll();
     measure_regions(mesh, certificate);
     append_plc_claims(mesh, faces.constraints, options, plc, certificate);

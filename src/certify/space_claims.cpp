@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "certify/box_cover.hpp"
+#include "certify/delaunay_cells.hpp"
 #include "certify/triangle_tree.hpp"
 #include "core/vec3_math.hpp"
 
@@ -54,8 +55,14 @@ bool spans_plane_inside(const SuspectMesh& mesh, const ConstraintTriangle& face,
     return inner > 0 && (outer > 0 || inner == 1);
 }
 
-/// No tetrahedron overlaps the one at a hull face next to that face: proves `disjoint_tets` if the premises of (1) hold.
-bool clear_inside_hull(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles) {
+/// Pairs of a tetrahedron and a hull face whose box it meets, per element, that are looked at before it is worth trying another way:
+/// ordinary meshes have TODO, and each costs a few signs.
+constexpr std::size_t kPairsPerElement = 100;
+
+enum class InsideHull : std::uint8_t { clear, not_clear, too_many };
+
+/// Clear: no tetrahedron overlaps the one at a hull face next to that face, which proves `disjoint_tets` if the premises of (1) hold.
+InsideHull look_inside_hull(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles) {
     std::vector<std::uint32_t> hull;
     std::vector<Box3> boxes;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -65,6 +72,7 @@ bool clear_inside_hull(const SuspectMesh& mesh, const std::vector<ConstraintTria
         hull.push_back(static_cast<std::uint32_t>(i));
         boxes.push_back(Box3::of(corners.data(), 3));
     }
+    std::size_t pairs_left = kPairsPerElement * (mesh.tet_count() + hull.size());
     const BoxCover cover(boxes);
     const BoxTree tree(std::move(boxes));
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
@@ -72,13 +80,15 @@ bool clear_inside_hull(const SuspectMesh& mesh, const std::vector<ConstraintTria
         const Box3 box = box_of(mesh, tet);
         if (!cover.may_meet(box)) continue;
         const bool found = tree.any_meeting(box, [&](std::uint32_t i) {
+            if (pairs_left == 0) return true;
+            --pairs_left;
             const ConstraintTriangle& face = triangles[hull[i]];
             const std::uint32_t owner = tet_of_hull_face(face);
             return owner != t && spans_plane_inside(mesh, face, tet) && overlap(mesh, t, owner);
         });
-        if (found) return false;
+        if (found) return pairs_left == 0 ? InsideHull::too_many : InsideHull::not_clear;
     }
-    return true;
+    return InsideHull::clear;
 }
 
 }  // namespace
@@ -113,10 +123,13 @@ bool overlap(const SuspectMesh& mesh, std::size_t tet, std::size_t other) {
     return true;
 }
 
-Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order) {
+Claim claim_disjoint(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order) {
     ClaimBuilder claim("disjoint_tets", "No two tetrahedra overlap.");
     claim.checked(mesh.tet_count());
-    if (faces_in_order && clear_inside_hull(mesh, triangles)) return claim.decided();
+    if (faces_in_order) {
+        const InsideHull inside = look_inside_hull(mesh, triangles);
+        if (inside == InsideHull::clear || (inside == InsideHull::too_many && disjoint_as_delaunay(mesh, search))) return claim.decided();
+    }
     std::vector<std::uint32_t> at_hull;
     for (const ConstraintTriangle& t : triangles)
         if (t.on_hull) at_hull.push_back(tet_of_hull_face(t));

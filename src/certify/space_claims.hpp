@@ -13,7 +13,8 @@
 //     corners strictly on both sides of F's plane, or three corners on it and the fourth on the inner side (on the outer, A and B would
 //     be apart).
 //     Hence `disjoint_tets` is proven if, for no hull face, a tetrahedron of this kind overlaps the one at the face. If one does, or if the
-//     premises fail, tetrahedra with a hull face are compared with all others, to count.
+//     premises fail, tetrahedra with a hull face are compared with all others, to count. Where too many meet the boxes of hull faces, because
+//     both are needles or worse, the way of delaunay_cells.hpp is tried first.
 //
 // (2) If moreover no two overlap, every interior face is locally Delaunay (neither apex strictly inside the other's circumsphere), every
 //     vertex is used, and no vertex is strictly inside the equatorial sphere of a hull face, then no vertex is strictly inside any
@@ -44,7 +45,7 @@ namespace wellmesh::certifying {
 
 /// No two tetrahedra have a common interior point; exact, see (1).
 /// @param faces_in_order  the premises of (1) hold: otherwise a clean search proves nothing.
-[[nodiscard]] Claim claim_disjoint(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order);
+[[nodiscard]] Claim claim_disjoint(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order);
 
 /// No vertex strictly inside the circumsphere of a positive tetrahedron (or in conflict with its orthogonal sphere, with weights); exact
 /// and global. Counts tetrahedra with at least one.

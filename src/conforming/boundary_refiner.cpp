@@ -287,14 +287,16 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
     return SplitOutcome::inserted;
 }
 
-void BoundaryRefiner::poll_or_throw() {
-    switch (guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting())) {
-        case RunGuard::Verdict::go_on: return;
-        case RunGuard::Verdict::cancelled: throw MeshError(ErrorCode::cancelled, guard_.stage(), "cancelled before the mesh conformed to its input");
-        case RunGuard::Verdict::out_of_time: throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), "the time limit passed before the mesh conformed to its input");
-        case RunGuard::Verdict::out_of_vertices:
-            throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("{} vertices were not enough for the mesh to conform to its input", mesh_.vertex_count()));
-    }
+void BoundaryRefiner::poll_or_throw(SegmentId s) {
+    guard_.require(mesh_.vertex_count(), mesh_.tets().live(), waiting(),
+                   [&] { return ElementRef{EntityKind::segment, s.value() + 1U, mesh_.point(mesh_.plc().segments[s.index()].ends[0])}; });
+}
+
+void BoundaryRefiner::poll_or_throw(FacetId f) {
+    guard_.require(mesh_.vertex_count(), mesh_.tets().live(), waiting(), [&] {
+        const ValidFacet& facet = mesh_.plc().facets[f.index()];
+        return ElementRef{EntityKind::facet, facet.source_facet + 1U, facet.origin};
+    });
 }
 
 bool BoundaryRefiner::step() {
@@ -311,7 +313,7 @@ bool BoundaryRefiner::step() {
             return true;
         }
         if (w.encroacher.valid() && !mesh_.find_subsegment(w.s).valid()) return true;  // split in the meantime
-        poll_or_throw();
+        poll_or_throw(w.s.segment);
         split(w.s, {w.encroacher.valid() ? InsertionReason::encroachment : InsertionReason::recovery, w.encroacher});
         return true;
     }
@@ -326,7 +328,7 @@ bool BoundaryRefiner::step() {
     if (!faces_.empty()) {
         const WaitingFace w = faces_.front();
         faces_.pop_front();
-        poll_or_throw();
+        poll_or_throw(w.s.facet);
         if (split(w.s, {InsertionReason::encroachment, w.encroacher}) == SplitOutcome::deferred) faces_.push_back(w);
         return true;
     }

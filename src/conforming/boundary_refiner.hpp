@@ -121,7 +121,8 @@ private:
         return record_event(request, v, point, nearest, sliver_free, {sizeof...(Corners), {corners...}, centre, radius});
     }
     std::uint32_t record_event(const SplitRequest& request, VertexId v, const Vec3& point, double nearest, bool sliver_free, const PickedElement& element);
-    void poll_or_throw();
+    void poll_or_throw(SegmentId s);
+    void poll_or_throw(FacetId f);
     void queue_chain(SegmentId s);
     [[nodiscard]] double segment_length(SegmentId s) const;
     void try_insert_on_facet(FacetId f, const Vec3& wanted, TetId near, const SplitRequest& request);

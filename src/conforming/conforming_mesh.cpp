@@ -18,7 +18,7 @@ void bounding_box(const std::vector<Vec3>& points, Vec3& lo, Vec3& hi) {
     }
 }
 
-ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint> more) : plc_(&plc) {
+ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint> more, const Checkpoint& checkpoint) : plc_(&plc) {
     std::vector<Vec3> points = plc.vertices;
     for (const CarriedPoint& p : more) points.push_back(p.point);
     Vec3 lo, hi;
@@ -27,7 +27,7 @@ ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint
     const Vec3 margin = 1e-9 * (hi - lo) + Vec3{1e-15 * std::abs(hi.x), 1e-15 * std::abs(hi.y), 1e-15 * std::abs(hi.z)} +
                         Vec3{1e-15 * std::abs(lo.x), 1e-15 * std::abs(lo.y), 1e-15 * std::abs(lo.z)};
     tri_ = Triangulation(lo - margin, hi + margin);
-    if (!tri_.insert_all(points))
+    if (!tri_.insert_all(points, checkpoint))
         throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all vertices lie in one plane: there is no volume to mesh");
     WELLMESH_CHECK(Stage::delaunay, tri_.duplicate_count() == 0);
     on_facet_.resize(plc.facets.size());

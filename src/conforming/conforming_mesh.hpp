@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/checkpoint.hpp"
 #include "core/ids.hpp"
 #include "delaunay/triangulation.hpp"
 #include "validation/valid_plc.hpp"
@@ -86,7 +87,7 @@ class ConformingMesh {
 public:
     /// Triangulates the input's vertices, mesh vertex i is vertex i of the PLC, and after them `more`. Nothing is labelled yet.
     /// @pre no two points are the same. @throws MeshError{bad_input} if all vertices are coplanar.
-    explicit ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint> more = {});
+    explicit ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint> more = {}, const Checkpoint& checkpoint = {});
 
     [[nodiscard]] const ValidPlc& plc() const { return *plc_; }
     [[nodiscard]] Triangulation& triangulation() { return tri_; }

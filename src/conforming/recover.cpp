@@ -41,6 +41,7 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
         if (round > kTooManyRounds)
             throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("facet {} could not be recovered", mesh_.plc().facets[f.index()].source_facet + 1),
                             {{EntityKind::facet, mesh_.plc().facets[f.index()].source_facet + 1, mesh_.plc().facets[f.index()].origin}});
+        poll_or_throw(f);
         FacetDelaunay flat(mesh_, f);
         const std::vector<FacetDelaunay::Missing> missing = flat.match_faces(mesh_);
         if (missing.empty()) {
@@ -57,7 +58,7 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
             const std::uint64_t key = mix64(seed_, mix64(m.corners[0].value(), mix64(m.corners[1].value(), m.corners[2].value())));
             const Vec3 unit = picking_point(2, key, 1);
             const Vec3 wanted = project_to_facet(facet, centre + (rules.jitter * radius * unit.x) * facet.axis_u + (rules.jitter * radius * unit.y) * facet.axis_v);
-            poll_or_throw();
+            poll_or_throw(f);
             taken.push_back(centre);
             if (acute_.any()) split_acute(f, m.corners, false, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
             else try_insert_on_facet(f, wanted, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});

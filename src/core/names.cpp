@@ -57,6 +57,7 @@ const char* to_string(Termination termination) noexcept {
         case Termination::goals_unmet: return "goals_unmet";
         case Termination::vertex_budget_reached: return "vertex_budget_reached";
         case Termination::time_budget_reached: return "time_budget_reached";
+        case Termination::memory_budget_reached: return "memory_budget_reached";
         case Termination::cancelled: return "cancelled";
     }
     return "?";

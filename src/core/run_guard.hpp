@@ -1,56 +1,82 @@
 // SPDX-License-Identifier: Apache-2.0
-// One place where a run learns that it must end: cancelled, out of time or out of vertices; and where progress is told.
+// One place where a run learns that it must end: cancelled, out of time, of vertices or of memory; and where progress is told.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <optional>
 
+#include "core/checkpoint.hpp"
+#include "wellmesh/error.hpp"
 #include "wellmesh/options.hpp"
 #include "wellmesh/run_control.hpp"
 
 namespace wellmesh {
 
+/// The most that a run holds, the certificate included, over what it holds while it refines: measured TODO.
+inline constexpr double kPeakOverRefinement = 1.5;
+
 class RunGuard {
 public:
-    enum class Verdict { go_on, cancelled, out_of_time, out_of_vertices };
+    enum class Verdict { go_on, cancelled, out_of_time, out_of_vertices, out_of_memory };
 
-    RunGuard(const Limits& limits, const RunControl& control) : limits_(limits), control_(&control), start_(Clock::now()) {}
+    /// Starts the clock. `control` must outlive this.
+    RunGuard(const Limits& limits, const RunControl& control);
 
-    /// Cheap enough for every insertion: the clock is read every 64th call.
+    /// Cheap enough for every insertion: clock and memory are looked at about once a millisecond. Once the user's limit is spent it stays so.
     [[nodiscard]] Verdict poll(std::uint64_t vertices, std::uint64_t tets, std::uint64_t unmet) {
+        if (spent_ != Verdict::go_on) return spent_;
         if (control_->stop.stop_requested()) return Verdict::cancelled;
-        if (limits_.max_vertices && vertices >= *limits_.max_vertices) return spent(Verdict::out_of_vertices);
+        if (limits_.max_vertices && vertices >= *limits_.max_vertices) return spent_ = Verdict::out_of_vertices;
         if (ceiling_ && vertices >= *ceiling_) return Verdict::out_of_vertices;
-        if ((++polls_ & 63U) != 0) return Verdict::go_on;
-        const Clock::time_point now = Clock::now();
-        if (control_->on_progress && now - last_progress_ > std::chrono::milliseconds(100)) {
-            last_progress_ = now;
-            control_->on_progress({stage_, vertices, tets, unmet});
-        }
-        if (limits_.time && now - start_ > *limits_.time) return spent(Verdict::out_of_time);
-        return Verdict::go_on;
+        if (++polls_ < stride_) return Verdict::go_on;
+        polls_ = 0;
+        return look(vertices, tets, unmet);
     }
+    /// The same for work without which there is no conforming mesh. Once there has been one (set_conforming), what is begun is finished: only the
+    /// algorithm's own ceiling ends it then, and whoever polls next learns of the user's limits.
+    /// @param where  () -> ElementRef, what is being worked on.
+    /// @throws MeshError{cancelled | budget_exhausted} naming stage and place.
+    template <class Where>
+    void require(std::uint64_t vertices, std::uint64_t tets, std::uint64_t unmet, Where&& where) {
+        const Verdict verdict = poll(vertices, tets, unmet);
+        const bool endless = ceiling_ && vertices >= *ceiling_;
+        if (verdict == Verdict::go_on || (conforming_ && !endless)) return;
+        throw gave_up(endless && conforming_ ? Verdict::out_of_vertices : verdict, vertices, where());
+    }
+    /// For the stages before there is a triangulation: looks at the clock each time and throws as require() does.
+    [[nodiscard]] Checkpoint checkpoint();
+
     void enter(Stage stage) { stage_ = stage; }
+    /// The mesh conforms to its input: from now on a run ends with a mesh.
+    void set_conforming() { conforming_ = true; }
     [[nodiscard]] Stage stage() const { return stage_; }
     /// A bound of the algorithm's own, beside the user's.
     void set_ceiling(std::optional<std::uint64_t> vertices) { ceiling_ = vertices; }
     /// Whether a limit that the user set, not the algorithm's own bound, has ended the run.
-    [[nodiscard]] bool user_limit_spent() const { return user_limit_spent_; }
+    [[nodiscard]] bool user_limit_spent() const { return spent_ != Verdict::go_on; }
+    /// More vertices than the user allows: what a cascade must finish may add some after the last of them.
+    [[nodiscard]] bool has_too_many(std::uint64_t vertices) const { return limits_.max_vertices && vertices > *limits_.max_vertices; }
+    /// So few are left that a cascade might not end within them: hardly any adds as many as these.
+    [[nodiscard]] bool is_nearly_full(std::uint64_t vertices) const { return has_too_many(vertices + 32 + limits_.max_vertices.value_or(0) / 64); }
+    /// Whether there is memory for another copy of all that the process holds: copies that are kept only to fall back on are left out otherwise.
+    [[nodiscard]] bool can_double() const;
 
 private:
     using Clock = std::chrono::steady_clock;
-    Verdict spent(Verdict verdict) {
-        user_limit_spent_ = true;
-        return verdict;
-    }
+    Verdict look(std::uint64_t vertices, std::uint64_t tets, std::uint64_t unmet);
+    [[nodiscard]] Clock::time_point now() const { return control_->clock ? control_->clock() : Clock::now(); }
+    [[nodiscard]] std::uint64_t memory() const;
+    [[nodiscard]] MeshError gave_up(Verdict verdict, std::uint64_t vertices, const std::optional<ElementRef>& where) const;
+
     Limits limits_;
     const RunControl* control_;
-    Clock::time_point start_, last_progress_{};
-    std::uint64_t polls_ = 0;
+    Clock::time_point start_, last_progress_{}, last_look_;
+    unsigned polls_ = 0, stride_ = 1;  // look at the clock every so many polls
     std::optional<std::uint64_t> ceiling_{};
-    bool user_limit_spent_ = false;
+    Verdict spent_ = Verdict::go_on;  // of the user's limits
     Stage stage_ = Stage::read;
+    bool conforming_ = false;
 };
 
 }  // namespace wellmesh

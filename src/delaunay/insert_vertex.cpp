@@ -151,11 +151,11 @@ void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
     last_located_ = new_tets_[0];
 }
 
-bool Triangulation::insert_all(std::span<const Vec3> points) {
+bool Triangulation::insert_all(std::span<const Vec3> points, const Checkpoint& checkpoint) {
     vertices_.clear();
     vertices_.reserve(points.size());
     for (const Vec3& p : points) vertices_.push_back({p});
-    return insert_in_order(biased_spatial_order(points));
+    return insert_in_order(biased_spatial_order(points), checkpoint);
 }
 
 bool Triangulation::insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order) {
@@ -164,10 +164,10 @@ bool Triangulation::insert_all_in_order(std::span<const Vec3> points, std::span<
     for (const std::uint32_t i : order) vertices_.push_back({points[i]});
     std::vector<std::uint32_t> identity(order.size());
     std::iota(identity.begin(), identity.end(), 0U);
-    return insert_in_order(identity);
+    return insert_in_order(identity, {});
 }
 
-bool Triangulation::insert_in_order(std::span<const std::uint32_t> order) {
+bool Triangulation::insert_in_order(std::span<const std::uint32_t> order, const Checkpoint& checkpoint) {
     tets_.clear();
     tets_.reserve(7 * vertices_.size());
     duplicates_ = 0;
@@ -186,9 +186,12 @@ bool Triangulation::insert_in_order(std::span<const std::uint32_t> order) {
     start(first[0], first[1], first[2], first[3]);
     Cavity cavity;
     TetId near = last_located_;
+    constexpr std::size_t kBetweenCheckpoints = 512;  // insertions, of microseconds mostly
+    std::size_t inserted = 0;
     for (const std::uint32_t i : order) {
         const VertexId v{i};
         if (is_inserted(v)) continue;
+        if (++inserted % kBetweenCheckpoints == 0) pass(checkpoint);
         if (!find_conflict_cavity(point(v), near, cavity)) {
             ++duplicates_;
             continue;

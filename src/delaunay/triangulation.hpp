@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "core/checkpoint.hpp"
 #include "core/ids.hpp"
 #include "delaunay/tet_store.hpp"
 #include "predicates/predicates.hpp"
@@ -62,7 +63,7 @@ public:
 
     /// Inserts all of `points` (duplicates are skipped) in a spatially sorted random order; vertex i is points[i].
     /// @return false if all points are coplanar; then nothing was triangulated. Duplicates: see `duplicate_count`.
-    bool insert_all(std::span<const Vec3> points);
+    bool insert_all(std::span<const Vec3> points, const Checkpoint& checkpoint = {});
     /// The same, but vertex i is points[order[i]]: with biased_spatial_order(points) neighbours in space are neighbours in memory.
     bool insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order);
 
@@ -132,7 +133,7 @@ private:
     void next_epoch();
     bool search_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity);
     [[nodiscard]] bool ghost_in_conflict(TetId t, const Vec3& p) const;
-    bool insert_in_order(std::span<const std::uint32_t> order);
+    bool insert_in_order(std::span<const std::uint32_t> order, const Checkpoint& checkpoint);
     /// Numbers for the vertices of one cavity or hole: forgets all but infinity, which is 0; there is room for `most` more.
     void clear_local_numbers(std::size_t most);
     /// 1, 2, 3, ... in order of first mention.

@@ -120,7 +120,7 @@ void OutputFile::open_directly() {
 }
 
 void OutputFile::write_out(const char* data, std::size_t size) {
-    if (stop_.stop_requested()) throw MeshError(ErrorCode::cancelled, Stage::write, "cancelled while writing " + target_.string());
+    if (stop_.stop_requested()) throw MeshError(ErrorCode::cancelled, Stage::write, "interrupted in stage write, while writing " + target_.string());
     const HoldFileSizeSignal hold;
     while (size > 0) {
         const ssize_t wrote = ::write(descriptor_, data, size);
@@ -204,6 +204,9 @@ std::vector<std::filesystem::path> OutputSet::commit() {
         for (const auto& file : files_) file->retract();
         throw;
     }
+    std::error_code ignored;
+    for (const auto& target : outdated_)
+        if (std::filesystem::is_regular_file(target, ignored)) std::filesystem::remove(target, ignored);
     return std::exchange(targets_, {});
 }
 

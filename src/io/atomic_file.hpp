@@ -59,6 +59,8 @@ class OutputSet {
 public:
     explicit OutputSet(std::stop_token stop = {}, bool sync = false) : stop_(std::move(stop)), sync_(sync) {}
     OutputFile& add(const std::filesystem::path& target);
+    /// A file that would belong to what these replace: gone once they are there, if it exists.
+    void drop(const std::filesystem::path& target) { outdated_.push_back(target); }
     /// @return the targets in the order they were added. @throws MeshError{cannot_write}
     std::vector<std::filesystem::path> commit();
 
@@ -66,7 +68,7 @@ private:
     std::stop_token stop_;
     bool sync_;
     std::vector<std::unique_ptr<OutputFile>> files_;
-    std::vector<std::filesystem::path> targets_;
+    std::vector<std::filesystem::path> targets_, outdated_;
 };
 
 }  // namespace wellmesh::io

@@ -120,7 +120,9 @@ std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::fi
     io::OutputSet files(options.stop, options.sync);
     if (extension == ".mesh") {
         io::write_medit(mesh, files.add(path));
-        if (!mesh.weights.empty()) io::write_medit_weights(mesh.weights, files.add(std::filesystem::path(path).replace_extension(".weights.sol")));
+        const auto weights = std::filesystem::path(path).replace_extension(".weights.sol");
+        if (mesh.weights.empty()) files.drop(weights);
+        else io::write_medit_weights(mesh.weights, files.add(weights));
     } else if (extension == ".vtu")
         io::write_vtu(mesh, files.add(path));
     else if (extension == ".msh")

@@ -15,6 +15,7 @@ namespace {
 // The regular tetrahedron is the extreme of both: R/L = sqrt(6)/4 and six equal dihedral angles of acos(1/3).
 constexpr double kLeastRadiusEdgeRatio = 0.612372435695794;
 constexpr double kLargestMinDihedralDeg = 70.528779365509308;
+constexpr std::uint64_t kLeastMemory = std::uint64_t{1} << 20;  // less than any process holds: it could only be a slip, bytes for MiB
 constexpr double kLargest = std::numeric_limits<double>::max();  // excludes infinity
 
 /// Combinations of strategy and mode that make no sense.
@@ -52,6 +53,7 @@ std::vector<std::string> check(const MeshOptions& options) {
     if (const auto v = options.size.max_volume) need(positive(*v), "max volume", "a finite number above 0", *v);
     if (const auto n = options.limits.max_vertices) need(*n >= 4, "max vertices", "at least 4", static_cast<double>(*n));
     if (const auto t = options.limits.time) need(t->count() > 0, "time limit", "above 0 milliseconds", static_cast<double>(t->count()));
+    if (const auto m = options.limits.memory_bytes) need(*m >= kLeastMemory, "memory limit", "at least 2^20 bytes", static_cast<double>(*m));
     if (const auto d = options.coplanar_tolerance) need(*d >= 0 && *d <= kLargest, "coplanar tolerance", "a finite number, at least 0", *d);
     check_strategy(options, problems);
     const std::vector<std::string> constants = check_paper_constants(options);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -26,6 +27,9 @@
 
 namespace wellmesh {
 namespace {
+
+/// Of memory at the peak, of a large mesh: measured TODO.
+constexpr double kBytesPerVertex = 1000;
 
 class Generator {
 public:
@@ -53,9 +57,19 @@ private:
     }
 
 public:
+    MeshResult run_within_memory() {
+        try {
+            return run();
+        } catch (const std::bad_alloc&) {
+            throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("memory ran out in stage {}; a memory limit would have ended the run in time", to_string(guard_.stage())));
+        }
+    }
+
+private:
     MeshResult run() {
         const std::uint64_t exact_before = exact_predicate_calls();
-        const ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_); });
+        const ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_, guard_.checkpoint()); });
+        require_room(valid.vertices.size());
         result_.statistics.coplanar_tolerance = valid.coplanar_tolerance;
         note_defects(valid);
         try {
@@ -99,6 +113,7 @@ public:
 private:
     void fill(const ValidPlc& valid) {
         ConformingMesh mesh = timed(Stage::delaunay, [&] { return start(valid); });
+        require_room(mesh.vertex_count());
         const bool acute = !valid.acute_features.empty();
         if (acute) guard_.set_ceiling(100 * mesh.vertex_count() + 1'000'000);
         AcuteGeometry acute_geometry(valid);
@@ -115,6 +130,7 @@ private:
             if (given_) settle_regions(mesh);
             boundary.conform();
             count();
+            guard_.set_conforming();
             if (given_) result_.statistics.given->added_for_conformity = mesh.vertex_count() - before;
         });
         Refiner refiner(mesh, boundary, guard_, options_);
@@ -172,17 +188,34 @@ private:
     }
 
     ConformingMesh start(const ValidPlc& valid) {
-        if (!given_) return ConformingMesh(valid);
-        return adopt_mesh(*given_, valid, adoption_tolerance(*given_, plc_), result_.statistics.given.emplace());
+        if (!given_) return ConformingMesh(valid, {}, guard_.checkpoint());
+        return adopt_mesh(*given_, valid, adoption_tolerance(*given_, plc_), result_.statistics.given.emplace(), guard_.checkpoint());
+    }
+
+    /// An input may conform without any new vertex, and have more than were allowed.
+    void require_room(std::size_t vertices) const {
+        const auto& most = options_.limits.max_vertices;
+        if (most && vertices > *most)
+            throw MeshError(ErrorCode::budget_exhausted, guard_.stage(),
+                            fmt::format("at most {} vertices were allowed, and {} are there before the first new one, in stage {}", *most, vertices, to_string(guard_.stage())));
     }
 
     /// A size that asks for more than a mesh can hold is told at once, not when memory ends. A limit of the user's may end the run before.
     void refuse_hopeless(std::uint64_t expected) const {
         constexpr std::uint64_t kMostVertices = (std::uint64_t{1} << 30) / 6;  // about six tetrahedra a vertex, 2^30 of them
-        if (expected > kMostVertices && !options_.limits.max_vertices && !options_.limits.time)
+        if (options_.limits.max_vertices || options_.limits.time) return;
+        const auto vertices = static_cast<double>(expected);
+        if (expected > kMostVertices)
             throw MeshError(ErrorCode::mesh_too_large, Stage::refine,
-                            fmt::format("the size asks for about {:.2g} vertices; a mesh can have {:.2g}: ask for a coarser one, or set a limit", static_cast<double>(expected),
+                            fmt::format("the size asks for about {:.2g} vertices; a mesh can have {:.2g}: ask for a coarser one, or set a limit", vertices,
                                         static_cast<double>(kMostVertices)));
+        // What is beyond the limit by less is begun: the estimate is no better.
+        constexpr double kSurelyTooMuch = 1.5;
+        const auto& memory = options_.limits.memory_bytes;
+        if (memory && vertices * kBytesPerVertex > kSurelyTooMuch * static_cast<double>(*memory))
+            throw MeshError(ErrorCode::mesh_too_large, Stage::refine,
+                            fmt::format("the size asks for about {:.2g} vertices, which take about {:.2g} GiB, and {:.2g} are allowed: ask for a coarser one, or set another limit",
+                                        vertices, vertices * kBytesPerVertex / (1 << 30), static_cast<double>(*memory) / (1 << 30)));
     }
 
     /// What the size goals alone ask for: refinement makes about 0.75 vertices a cubed circumradius bound, 0.4 a volume bound.
@@ -229,6 +262,7 @@ private:
             case RunGuard::Verdict::cancelled: return Termination::cancelled;
             case RunGuard::Verdict::out_of_time: return Termination::time_budget_reached;
             case RunGuard::Verdict::out_of_vertices: return Termination::vertex_budget_reached;
+            case RunGuard::Verdict::out_of_memory: return Termination::memory_budget_reached;
             case RunGuard::Verdict::go_on: break;
         }
         return Termination::goals_met;
@@ -266,7 +300,7 @@ private:
 MeshResult generate(const Plc& plc, const MeshOptions& options, const RunControl& control) {
     const std::vector<std::string> wrong = check(options);
     if (!wrong.empty()) throw MeshError(ErrorCode::bad_options, Stage::validate, fmt::format("{}", fmt::join(wrong, "; ")));
-    return Generator(plc, nullptr, options, control).run();
+    return Generator(plc, nullptr, options, control).run_within_memory();
 }
 
 MeshResult improve(const TetMesh& mesh, const Plc& plc, const MeshOptions& options, const RunControl& control) {
@@ -275,7 +309,7 @@ MeshResult improve(const TetMesh& mesh, const Plc& plc, const MeshOptions& optio
     if (options.slivers != SliverStrategy::best) wrong.push_back("slivers must be best where a mesh is given");
     if (options.invariants) wrong.push_back("invariants are claims about insertions and can't be asked for where a mesh is given");
     if (!wrong.empty()) throw MeshError(ErrorCode::bad_options, Stage::validate, fmt::format("{}", fmt::join(wrong, "; ")));
-    return Generator(plc, &mesh, options, control).run();
+    return Generator(plc, &mesh, options, control).run_within_memory();
 }
 
 }  // namespace wellmesh

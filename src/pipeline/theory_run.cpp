@@ -52,6 +52,8 @@ void check_practical_constants(const MeshOptions& options, std::vector<std::stri
     constant("sigma0 at the boundary", paper.sigma0_boundary);
     if (paper.delta && options.slivers == SliverStrategy::chew)
         problems.push_back(fmt::format("delta (here {}) is not for the slivers chew: its points lie within half a unit", *paper.delta));
+    if (paper.delta && (options.slivers == SliverStrategy::none || options.slivers == SliverStrategy::exude))
+        problems.push_back(fmt::format("delta (here {}) is the radius of picking regions, from which the slivers {} pick nothing", *paper.delta, name));
     if (!papers_own) return;
     if (paper.sigma0_boundary && !paper.sigma0) problems.push_back("sigma0 at the boundary needs sigma0, by which slivers inside are judged then");
     if (paper.sigma0 && (options.quality.min_dihedral_angle_deg != 0 || options.quality.min_dihedral_boundary_deg))

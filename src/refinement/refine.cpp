@@ -349,7 +349,12 @@ void Refiner::process_centre(TetId t, InsertionReason reason, const Vec3& centre
 
 RunGuard::Verdict Refiner::refine() {
     enqueue_all();
-    return drain();
+    keeps_nearly_full_ = true;
+    const RunGuard::Verdict verdict = drain();
+    keeps_nearly_full_ = false;
+    if (nearly_full_ && guard_.has_too_many(mesh_.vertex_count())) mesh_ = std::move(*nearly_full_);
+    nearly_full_.reset();
+    return verdict;
 }
 
 RunGuard::Verdict Refiner::drain() {
@@ -359,6 +364,7 @@ RunGuard::Verdict Refiner::drain() {
             boundary_.step();
             continue;
         }
+        if (keeps_nearly_full_ && !nearly_full_ && guard_.is_nearly_full(mesh_.vertex_count()) && guard_.can_double()) nearly_full_ = mesh_;
         report_milestones();
         if (!by_sliver_.empty() && mesh_.vertex_count() >= sliver_budget_) {
             sliver_budget_spent_ = true;

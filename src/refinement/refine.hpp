@@ -83,6 +83,8 @@ private:
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
     AcuteExemptions exemptions_;
+    std::optional<ConformingMesh> nearly_full_;  // of refine(), in case the vertices that are left are not enough for a cascade
+    bool keeps_nearly_full_ = false;
     std::vector<CellSize> sizes_;
     double max_radius_edge_;
     std::optional<SliverRule> sliver_rule_{};

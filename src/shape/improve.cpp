@@ -21,6 +21,7 @@ constexpr unsigned kTriesUntouched = 3;   // failures after which a tetrahedron 
 constexpr unsigned kTriesInAll = 4;       // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 constexpr double kRungDeg = 5;
 constexpr double kFirstRungDeg = 30;      // of moves alone, which mostly reach it, and do so better straight away than from rung to rung
+constexpr double kStraightDeg = 35;       // goals up to this are mostly reached, and are aimed at straight away
 /// From this angle on the aspect ratio is a goal too. The angle alone does not bound it: 30 degrees leave needles of R/r up to 11 at R/L = 2.
 constexpr double kAspectFromDeg = 30, kMaxAspect = 8;
 /// Smoothing may make angles this small, relative to the goal, on the way: moves mend them.
@@ -249,7 +250,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     for (unsigned round = 0; below() && verdict == RunGuard::Verdict::go_on; ++round) {
         const bool spent = static_cast<double>(mesh_.vertex_count()) > kVertexBudget * static_cast<double>(vertices_at_start) + kVertexAllowance;
-        if (spent || round == kSplitRounds) break;
+        if (spent || round == kSplitRounds || (!last && !guard_.can_double())) break;
         if (!last) {
             last = mesh_;
             last_worst = worst_cosine();
@@ -258,7 +259,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
     reached = !below();
-    if (!reached && last && last_worst <= worst_cosine()) mesh_ = std::move(*last);
+    if (!reached && last && (last_worst <= worst_cosine() || guard_.has_too_many(mesh_.vertex_count()))) mesh_ = std::move(*last);
     return verdict;
 }
 
@@ -279,15 +280,35 @@ RunGuard::Verdict ShapeImprover::perturb(double angle_deg) {
     return verdict;
 }
 
-RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
-    const std::size_t vertices = mesh_.vertex_count(), slots = mesh_.vertex_slots();
+/// All there is, straight at one angle.
+RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_at_start) {
     goal_cosine_ = cosine_of_degrees(angle_deg);
     judge_.set_goal(goal_cosine_, angle_deg >= kAspectFromDeg ? kMaxAspect : TetJudge::kNoAspect);
+    stuck_.clear();
+    tried_.assign(tried_.size(), {});
     collect_bad();
     RunGuard::Verdict verdict = settle(LastResort::remove_or_insert);
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left_.empty(); rung += kRungDeg)
-        verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices, reached);
+        verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices_at_start, reached);
+    return verdict;
+}
+
+RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
+    const std::size_t vertices = mesh_.vertex_count(), slots = mesh_.vertex_slots();
+    RunGuard::Verdict verdict = aim_at(std::min(angle_deg, kStraightDeg), vertices);
+    // Beyond, most tetrahedra are bad: aiming at all of them at once spends its time on the many and leaves the worst. What a rung has reached is
+    // kept if the next one ends lower, out of reach or out of time.
+    for (double rung = kStraightDeg; verdict == RunGuard::Verdict::go_on && left_.empty() && rung < angle_deg && guard_.can_double();) {
+        rung = std::min(rung + kRungDeg, angle_deg);
+        const ConformingMesh last = mesh_;
+        const double last_worst = worst_cosine();
+        verdict = aim_at(rung, vertices);
+        if (worst_cosine() > last_worst) {
+            mesh_ = last;
+            collect_bad();
+        }
+    }
     if (verdict == RunGuard::Verdict::go_on && left_.empty()) verdict = thinning_.run(slots, vertices);
     return verdict;
 }

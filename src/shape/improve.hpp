@@ -40,7 +40,8 @@ public:
           insertion_(mesh, boundary, judge_, seed),
           thinning_(mesh, boundary, guard, judge_, mover_) {}
 
-    /// Works until every dihedral angle of the domain is at least `angle_deg`, or nothing helps, or the guard says stop.
+    /// Works until every dihedral angle of the domain is at least `angle_deg`, or nothing helps, or the guard says stop. Angles beyond what meshes
+    /// mostly reach are approached in steps, so that asking for more gives no less.
     RunGuard::Verdict improve(double angle_deg);
     /// The same by moves alone: no vertex comes or goes [EdelsbrunnerEtAl00, Tournois09].
     RunGuard::Verdict perturb(double angle_deg);
@@ -69,6 +70,7 @@ private:
     };
     enum class LastResort : std::uint8_t { none, insert, remove_or_insert };
 
+    RunGuard::Verdict aim_at(double angle_deg, std::size_t vertices_at_start);
     RunGuard::Verdict settle(LastResort last_resort);
     RunGuard::Verdict pass(unsigned samples, LastResort last_resort);
     RunGuard::Verdict passes(unsigned samples, unsigned most, LastResort last_resort);

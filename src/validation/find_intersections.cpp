@@ -14,12 +14,13 @@ namespace {
 
 /// Pairs listed before the search gives up: a file in which everything meets everything has quadratically many.
 constexpr std::size_t kMaxListed = 100000;
+constexpr std::size_t kBetweenCheckpoints = 256;  // edges
 
 /// Triangles, then wires, then lone vertices, in one numbering.
 class IntersectionFinder {
 public:
-    IntersectionFinder(const CleanInput& input, const Soup& soup, const EdgeTable& edges, Report& report)
-        : input_(input), soup_(soup), edges_(edges), report_(report) {
+    IntersectionFinder(const CleanInput& input, const Soup& soup, const EdgeTable& edges, Report& report, const Checkpoint& checkpoint)
+        : input_(input), soup_(soup), edges_(edges), report_(report), checkpoint_(checkpoint) {
         std::vector<char> used(input.points.size(), 0);
         for (const SoupTriangle& t : soup.triangles)
             for (const VertexId v : t.v) used[v.index()] = 1;
@@ -35,7 +36,10 @@ public:
 
     void run() {
         const BoxTree tree(boxes_);
-        for (std::size_t e = 0; e < edges_.keys.size() && !full(); ++e) test_edge(e, tree);
+        for (std::size_t e = 0; e < edges_.keys.size() && !full(); ++e) {
+            if (e % kBetweenCheckpoints == 0) pass(checkpoint_);
+            test_edge(e, tree);
+        }
         for (std::uint32_t i = static_cast<std::uint32_t>(first_wire()); i < boxes_.size() && !full(); ++i)
             tree.query([&](const Box& b) { return b.meets(boxes_[i]); },
                        [&](std::uint32_t j) {
@@ -73,6 +77,7 @@ private:
     const Soup& soup_;
     const EdgeTable& edges_;
     Report& report_;
+    const Checkpoint& checkpoint_;
     std::vector<VertexId> lone_;
     std::vector<Box> boxes_;
     std::unordered_set<std::uint64_t> seen_;
@@ -148,8 +153,8 @@ void IntersectionFinder::describe(std::size_t i, const Vec3& where, std::vector<
 
 }  // namespace
 
-void find_intersections(const CleanInput& input, const Soup& soup, const EdgeTable& edges, Report& report) {
-    IntersectionFinder(input, soup, edges, report).run();
+void find_intersections(const CleanInput& input, const Soup& soup, const EdgeTable& edges, Report& report, const Checkpoint& checkpoint) {
+    IntersectionFinder(input, soup, edges, report, checkpoint).run();
 }
 
 }  // namespace wellmesh

@@ -2,6 +2,7 @@
 // Simplices of the complex may meet only in common vertices and edges. Everything else is listed.
 #pragma once
 
+#include "core/checkpoint.hpp"
 #include "validation/merge_coplanar.hpp"
 #include "validation/report.hpp"
 #include "validation/rounding.hpp"
@@ -15,7 +16,8 @@ namespace wellmesh {
 /// Two triangles meet outside of common vertices and edges iff an edge of one meets the other and shares no end with it, or they are
 /// coplanar and folded over a common edge, or have the same corners. So edges are searched for, in a tree of the triangles' boxes;
 /// many triangles about one vertex cost a comparison of numbers each.
-void find_intersections(const CleanInput& input, const Soup& soup, const EdgeTable& edges, Report& report);
+void find_intersections(const CleanInput& input, const Soup& soup, const EdgeTable& edges, Report& report,
+                        const Checkpoint& checkpoint = {});
 
 /// Reports vertices that lie within `rounding.contact()` of a facet or segment that they do not belong to, without touching it: what
 /// separates them is below the last bits of the coordinates. Triangles in the same merged facet are only tested against segments.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/checkpoint.hpp"
 #include "core/ids.hpp"
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/plc.hpp"
@@ -69,6 +70,7 @@ private:
 };
 
 /// @throws MeshError{bad_input | coordinate_range} whose message lists every error found.
-[[nodiscard]] ValidPlc validate(const Plc& plc, const MeshOptions& options = {});
+/// @param checkpoint  passed between the checks and, of those that may take long, between pieces.
+[[nodiscard]] ValidPlc validate(const Plc& plc, const MeshOptions& options = {}, const Checkpoint& checkpoint = {});
 
 }  // namespace wellmesh

@@ -23,7 +23,7 @@ namespace wellmesh {
 
 /// The only maker of ValidPlc.
 struct ValidPlcBuilder {
-    ValidPlcBuilder(const Plc& stated, const MeshOptions& options) : plc(stated), report(stated) {
+    ValidPlcBuilder(const Plc& stated, const MeshOptions& options, const Checkpoint& stop = {}) : plc(stated), checkpoint(stop), report(stated) {
         rounding.relative = std::max(0.0, stated.relative_rounding);
         rounding.override_with = options.coplanar_tolerance;
     }
@@ -40,6 +40,7 @@ struct ValidPlcBuilder {
     void summarise();
 
     const Plc& plc;
+    const Checkpoint checkpoint;
     Report report;
     Rounding rounding;
     CleanInput input;
@@ -57,23 +58,31 @@ void ValidPlcBuilder::run() {
     }
     for (const Vec3& p : plc.vertices)
         if (in_exact_range(p)) rounding.largest_coordinate = std::max({rounding.largest_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    pass(checkpoint);
     input = clean_input(plc, rounding, report);
+    pass(checkpoint);
     soup = make_soup(input, plc, rounding, report);
     edges = make_edge_table(soup.triangles);
-    find_intersections(input, soup, edges, report);
+    pass(checkpoint);
+    find_intersections(input, soup, edges, report, checkpoint);
     groups = merge_coplanar(input, soup, edges, plc, rounding);
+    pass(checkpoint);
     find_thin_features(input, soup, edges, groups, rounding, report);
+    pass(checkpoint);
     find_open_edges();
     find_segments();
     find_facets();
     if (report.has_errors()) return;
+    pass(checkpoint);
     const LineQuery lines(input.points, soup.triangles);
     const CellMap map = find_cells(input.points, soup.triangles, edges, lines);
+    pass(checkpoint);
     out.cells = fill_cells(input, soup, map, lines, report);
     attach_cells(map);
     if (!report.has_errors()) drop_outside(lines, map);
     keep_isolated_vertices(lines, map);
     compress_vertices();
+    pass(checkpoint);
     out.acute_features = find_sharp_features(out, rounding, report);
 }
 
@@ -288,8 +297,8 @@ void ValidPlcBuilder::summarise() {
     d.coplanar_tolerance = out.coplanar_tolerance;
 }
 
-ValidPlc validate(const Plc& plc, const MeshOptions& options) {
-    ValidPlcBuilder builder(plc, options);
+ValidPlc validate(const Plc& plc, const MeshOptions& options, const Checkpoint& checkpoint) {
+    ValidPlcBuilder builder(plc, options, checkpoint);
     builder.run();
     builder.summarise();
     throw_if_invalid(builder.out.diagnosis, plc.source_name);

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Always an end, wherever a budget is spent: a typed error before the mesh conforms, a valid mesh from then on. Clocks and memory are the test's
+// own, so that every run is repeatable.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include "support/expect_result.hpp"
+#include "support/synthetic_plcs.hpp"
+#include "wellmesh/generate.hpp"
+
+namespace wellmesh::testing {
+namespace {
+
+/// One millisecond passes whenever somebody looks at the clock.
+RunControl ticking() {
+    RunControl control;
+    control.clock = [time = std::chrono::steady_clock::time_point{}]() mutable { return time += std::chrono::milliseconds(1); };
+    return control;
+}
+
+struct Outcome {
+    std::optional<MeshResult> result{};
+    std::optional<MeshError> error{};
+};
+
+Outcome run(const Plc& plc, const MeshOptions& options, const RunControl& control) {
+    try {
+        return {.result = generate(plc, options, control)};
+    } catch (const MeshError& e) {
+        return {.error = e};
+    }
+}
+
+void expect_typed(const Outcome& outcome) {
+    ASSERT_TRUE(outcome.error.has_value());
+    EXPECT_EQ(outcome.error->code(), ErrorCode::budget_exhausted) << outcome.error->what();
+    EXPECT_LE(outcome.error->stage(), Stage::conform) << outcome.error->what();
+}
+
+TEST(Budgets, ATimeLimitOfAnyLengthEndsInATypedErrorOrAMesh) {
+    for (const NamedPlc& named : all_synthetic_plcs()) {
+        const Plc plc = transformed(named.plc, 1, 0, 1);
+        MeshOptions options;
+        options.size.edge_length = 0.12 * diagonal(plc);
+        options.quality.min_dihedral_angle_deg = 30;
+        std::size_t errors = 0, cut_short = 0;
+        bool finished = false;
+        for (int limit = 1; !finished; limit += 1 + limit / 4) {
+            SCOPED_TRACE(fmt::format("{}, {} ms", named.name, limit));
+            ASSERT_LT(limit, 1'000'000);
+            options.limits.time = std::chrono::milliseconds(limit);
+            const Outcome outcome = run(plc, options, ticking());
+            if (!outcome.result) {
+                expect_typed(outcome);
+                EXPECT_EQ(cut_short, 0U) << "a longer limit gave less";
+                ++errors;
+                continue;
+            }
+            expect_valid(*outcome.result);
+            finished = outcome.result->termination != Termination::time_budget_reached;
+            cut_short += !finished;
+        }
+        EXPECT_GT(errors, 0U);
+        EXPECT_GT(cut_short, 1U) << named.name;
+    }
+}
+
+TEST(Budgets, ALimitByARepeatableClockGivesTheSameMeshTwice) {
+    const Plc plc = transformed(stepped_shaft(), 1, 0, 1);
+    MeshOptions options;
+    options.size.edge_length = 0.1 * diagonal(plc);
+    options.limits.time = std::chrono::milliseconds(150);
+    const MeshResult first = generate(plc, options, ticking()), second = generate(plc, options, ticking());
+    EXPECT_EQ(first.termination, Termination::time_budget_reached);
+    EXPECT_EQ(first.mesh.vertices, second.mesh.vertices);
+    EXPECT_EQ(first.mesh.tets, second.mesh.tets);
+}
+
+TEST(Budgets, EveryVertexBudgetIsKept) {
+    const Plc plc = transformed(cube_with_internal_facet(), 2, 0, 1);
+    std::size_t meshes = 0;
+    for (std::uint64_t most = 4; most < 150; ++most) {
+        SCOPED_TRACE(most);
+        MeshOptions options;
+        options.size.edge_length = 0.1 * diagonal(plc);
+        options.seeding = Seeding::off;  // cascades at the boundary, not a lattice inside
+        options.limits.max_vertices = most;
+        const Outcome outcome = run(plc, options, {});
+        if (!outcome.result) {
+            expect_typed(outcome);
+            EXPECT_EQ(meshes, 0U);
+            continue;
+        }
+        ++meshes;
+        expect_valid(*outcome.result);
+        EXPECT_EQ(outcome.result->termination, Termination::vertex_budget_reached);
+        EXPECT_LE(outcome.result->mesh.vertices.size(), most);
+    }
+    EXPECT_GT(meshes, 100U);
+}
+
+TEST(Budgets, FewerVerticesThanTheInputHasAreTooFew) {
+    MeshOptions options;
+    options.limits.max_vertices = 7;
+    const Outcome outcome = run(cube(), options, {});
+    expect_typed(outcome);
+    EXPECT_NE(std::string(outcome.error->what()).find("at most 7"), std::string::npos) << outcome.error->what();
+    options.limits.max_vertices = 8;
+    options.quality.min_dihedral_angle_deg = 0;
+    EXPECT_TRUE(run(cube(), options, {}).result.has_value());
+}
+
+TEST(Budgets, AMemoryLimitEndsTheRunWithAMesh) {
+    // Memory grows by a MiB each time it is looked at, and is looked at each time the clock is.
+    RunControl control = ticking();
+    control.resident_bytes = [held = std::uint64_t{16} << 20]() mutable { return held += std::uint64_t{1} << 20; };
+    MeshOptions options;
+    options.size.edge_length = 0.05;
+    options.limits.memory_bytes = std::uint64_t{200} << 20;
+    const Outcome outcome = run(transformed(cube(), 1, 0, 1), options, control);
+    ASSERT_TRUE(outcome.result.has_value()) << outcome.error->what();
+    EXPECT_EQ(outcome.result->termination, Termination::memory_budget_reached);
+    expect_valid(*outcome.result);
+
+    options.limits.memory_bytes = std::uint64_t{18} << 20;
+    expect_typed(run(transformed(cube(), 1, 0, 1), options, control));
+}
+
+TEST(Budgets, ASizeThatCanNotFitIntoMemoryIsRefusedAtOnce) {
+    MeshOptions options;
+    options.size.edge_length = 0.001;
+    options.limits.memory_bytes = std::uint64_t{4} << 30;
+    const Outcome outcome = run(cube(), options, {});
+    ASSERT_TRUE(outcome.error.has_value());
+    EXPECT_EQ(outcome.error->code(), ErrorCode::mesh_too_large) << outcome.error->what();
+}
+
+TEST(Budgets, ValidationAndDelaunayStopWhenAsked) {
+    std::stop_source source;
+    source.request_stop();
+    RunControl stopped;
+    stopped.stop = source.get_token();
+    const Outcome cancelled = run(stepped_shaft(), {}, stopped);
+    ASSERT_TRUE(cancelled.error.has_value());
+    EXPECT_EQ(cancelled.error->code(), ErrorCode::cancelled);
+    EXPECT_EQ(cancelled.error->stage(), Stage::validate);
+
+    // Many points in a box: the triangulation looks at the clock on its way, too.
+    Plc crowd = cube(100);
+    for (int i = 0; i < 4000; ++i) crowd.vertices.push_back({1.0 + 98.0 * ((i * 7919) % 4001) / 4001, 1.0 + 98.0 * ((i * 104729) % 3989) / 3989, 1.0 + 98.0 * i / 4000});
+    MeshOptions options;
+    bool in_delaunay = false;
+    for (int limit = 1; limit < 200 && !in_delaunay; ++limit) {
+        options.limits.time = std::chrono::milliseconds(limit);
+        const Outcome outcome = run(crowd, options, ticking());
+        in_delaunay = outcome.error && outcome.error->stage() == Stage::delaunay;
+    }
+    EXPECT_TRUE(in_delaunay);
+}
+
+TEST(Budgets, AskingForMoreThanCanBeReachedGivesNoLess) {
+    const Plc plc = transformed(cube(), 1, 0, 1);
+    const auto reached = [&](double angle) {
+        MeshOptions options;
+        options.size.edge_length = 0.2;
+        options.quality.min_dihedral_angle_deg = angle;
+        options.limits.time = std::chrono::seconds(4);
+        return generate(plc, options, ticking()).certificate.all.min_dihedral_angle_deg;
+    };
+    const double asked_35 = reached(35), asked_65 = reached(65);
+    EXPECT_GE(asked_35, 35);
+    EXPECT_GE(asked_65, 35);
+}
+
+}  // namespace
+}  // namespace wellmesh::testing
