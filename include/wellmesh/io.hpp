@@ -7,6 +7,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "wellmesh/background_mesh.hpp"
 #include "wellmesh/error.hpp"
 #include "wellmesh/plc.hpp"
 #include "wellmesh/tet_mesh.hpp"
@@ -22,6 +23,10 @@ namespace wellmesh {
 
 /// Reads a tetrahedral mesh: MEDIT .mesh (ASCII), .node/.ele.
 [[nodiscard]] TetMesh read_mesh(const std::filesystem::path& path);
+
+/// Reads a mesh with target edge lengths at its vertices: TetGen's .node, .ele and .mtr (any of the three names them).
+/// @throws MeshError  cannot_read, bad_input (file, line, token).
+[[nodiscard]] BackgroundMesh read_background_mesh(const std::filesystem::path& path);
 
 /// Reads the weights of a mesh's vertices: MEDIT's solution format (.sol, one scalar a vertex), or the attribute of a .node.
 /// @param vertices  how many there must be. @throws MeshError  cannot_read, bad_input (file, line, token).
