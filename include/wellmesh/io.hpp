@@ -14,7 +14,7 @@
 
 namespace wellmesh {
 
-/// Reads .off .stl .obj .ply .poly .smesh (a .node beside them as they ask), or the surface of a .mesh.
+/// Reads .off .stl .obj .ply .poly .smesh (a .node beside them as they ask; sizes of vertices from a .mtr beside .poly and .smesh), or the surface of a .mesh.
 /// @throws MeshError  cannot_read, bad_input (file, line, token).
 [[nodiscard]] Plc read_plc(const std::filesystem::path& path);
 
