@@ -19,6 +19,9 @@ constexpr double kVerticesPerCubedRadius = 0.75;
 /// Leaves are about as many as an eighth of the vertices that they ask for, and cost less: a mesh that can't hold its vertices never uses more.
 constexpr std::size_t kMostLeaves = std::size_t{1} << 25;
 constexpr unsigned kLeastDepth = 2;
+/// A source that asks for hardly less than others do already is none.
+constexpr double kWorthKeeping = 0.01;
+constexpr std::size_t kFirstBatch = 64;
 
 unsigned depth_of(double part_of_side) { return static_cast<unsigned>(std::ceil(-std::log2(part_of_side))); }
 
@@ -46,7 +49,7 @@ SampledDomain domain_of(const ValidPlc& plc) {
 /// Corners and probes of leaves from which f grows faster than the gradation allows.
 class SteepPoints {
 public:
-    SteepPoints(const std::function<double(const Vec3&)>& f, const std::vector<Vec3>& probes, double gradation) : f_(f), probes_(probes), slope_(kSteep * gradation) {}
+    SteepPoints(const std::function<double(const Vec3&)>& f, const std::vector<Vec3>& probes, double gradation) : f_(f), probes_(probes), gradation_(gradation), slope_(kSteep * gradation) {}
 
     void look_at(const SizeOctree::Leaf& leaf) {
         if (!leaf.in_domain) return;
@@ -63,19 +66,28 @@ public:
         for (const std::uint32_t i : leaf.probes)
             if (const double value = f_(probes_[i]); is_steep(probes_[i], value)) found_.push_back({{probes_[i], {}, {}}, 1, value});
     }
-    /// Each once, in an order that depends on the points alone.
-    [[nodiscard]] std::vector<SizeSource> take() {
-        std::sort(found_.begin(), found_.end(), [](const SizeSource& a, const SizeSource& b) { return lexicographically_less(a.corners[0], b.corners[0]); });
-        found_.erase(std::unique(found_.begin(), found_.end(),
-                                 [](const SizeSource& a, const SizeSource& b) { return squared_distance(a.corners[0], b.corners[0]) == 0; }),
-                     found_.end());
-        return std::move(found_);
+    /// Those that ask for less than the smaller ones among them and `others`, in an order that depends on the points alone.
+    [[nodiscard]] std::vector<SizeSource> take(const std::vector<SizeSource>& others) {
+        std::sort(found_.begin(), found_.end(), [](const SizeSource& a, const SizeSource& b) {
+            return a.edge_length != b.edge_length ? a.edge_length < b.edge_length : lexicographically_less(a.corners[0], b.corners[0]);
+        });
+        // In batches, each as long as all before, so that few trees are built. Most points are beyond the reach of the smallest.
+        const std::size_t given = others.size();
+        std::vector<SizeSource> kept = others;
+        for (std::size_t begin = 0; begin < found_.size();) {
+            const std::size_t end = std::min(found_.size(), begin + std::max<std::size_t>(kFirstBatch, begin));
+            const SourceTree tree(kept, gradation_);
+            for (; begin < end; ++begin)
+                if (const double asked = tree(found_[begin].corners[0]); found_[begin].edge_length < (1 - kWorthKeeping) * asked) kept.push_back(found_[begin]);
+        }
+        kept.erase(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(given));
+        return kept;
     }
 
 private:
     const std::function<double(const Vec3&)>& f_;
     const std::vector<Vec3>& probes_;
-    double slope_;
+    double gradation_, slope_;
     std::vector<SizeSource> found_;
 };
 
@@ -104,8 +116,7 @@ void SizeField::add_volumes(const ValidPlc& plc, const SizeGoals& goals) {
         if (goals.max_volume) cell.max_volume = *goals.max_volume;
         if (plc.cells[i].max_volume > 0) cell.max_volume = std::min(cell.max_volume, plc.cells[i].max_volume);
         cell.max_volume = std::max(cell.max_volume, least);
-        const double radius = kCircumradiusPerEdgeLength * lengths_[i];
-        cell.max_squared_circumradius = radius * radius;
+        cell.max_squared_circumradius = kCircumradiusPerEdgeLength * kCircumradiusPerEdgeLength * lengths_[i] * lengths_[i];
         if (plc.cells[i].filled) smallest_ = std::min(smallest_, equivalent_length(i));
     }
 }
@@ -168,7 +179,7 @@ SizeField::SizeField(const ValidPlc& plc, const SizeGoals& goals, const SizeFiel
         SteepPoints steep(f, point_sizes.probes(), goals.gradation);
         const SizeOctree scout({around.lo, around.side, f, point_sizes.probes(), around.surface, inside, depth, may_go_on},
                                [&](const SizeOctree::Leaf& leaf) { steep.look_at(leaf); });
-        const std::vector<SizeSource> found = steep.take();
+        const std::vector<SizeSource> found = steep.take(sources);
         sources.insert(sources.end(), found.begin(), found.end());
     }
     const SourceTree tree(std::move(sources), goals.gradation);
