@@ -86,8 +86,8 @@ std::vector<fs::path> files_behind(const fs::path& path) {
     const auto add = [&](std::initializer_list<const char*> siblings) {
         for (const char* sibling : siblings) files.push_back(fs::path(files[0]).replace_extension(sibling));
     };
-    if (extension == ".node" || extension == ".ele") add({".node", ".ele", ".face", ".edge"});
-    if (extension == ".poly" || extension == ".smesh") add({".node"});
+    if (extension == ".node" || extension == ".ele" || extension == ".mtr") add({".node", ".ele", ".face", ".edge", ".mtr"});
+    if (extension == ".poly" || extension == ".smesh") add({".node", ".mtr"});
     return files;
 }
 
@@ -138,6 +138,49 @@ void add_paper_flags(CLI::App& command, MeshOptions& options, const CLI::Option*
     });
 }
 
+/// "ID=H" of --size-region and its like.
+EntitySize read_entity_size(const std::string& text, EntityKind kind, const std::string& flag) {
+    const std::size_t equals = text.rfind('=');
+    EntitySize size{kind, 0, 0};
+    const bool good = equals != std::string::npos && CLI::detail::lexical_cast(text.substr(0, equals), size.id) && CLI::detail::lexical_cast(text.substr(equals + 1), size.edge_length);
+    if (!good || !(size.edge_length > 0 && size.edge_length <= std::numeric_limits<double>::max()))
+        throw CLI::ValidationError(flag, fmt::format("must be ID=H, a whole number and an edge length above 0, not '{}'", text));
+    return size;
+}
+
+/// Sizes that differ from place to place, and how they grow.
+void add_size_field_flags(CLI::App& command, MeshOptions& options) {
+    SizeGoals& size = options.size;
+    const auto on_entities = [&](const std::string& flag, EntityKind kind, const char* what) {
+        command.add_option_function<std::vector<std::string>>(
+            flag, [&size, kind, flag](const std::vector<std::string>& texts) { for (const std::string& text : texts) size.entities.push_back(read_entity_size(text, kind, flag)); }, what)
+            ->type_name("ID=H")->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    };
+    on_entities("--size-region", EntityKind::region, "target edge length in a region, by its id; may be given several times, as may the next three");
+    on_entities("--size-facet", EntityKind::facet, "target edge length on the facets of this marker");
+    on_entities("--size-segment", EntityKind::segment, "target edge length on the segments of this marker");
+    on_entities("--size-vertex", EntityKind::vertex, "target edge length at the vertices of this marker");
+    command.add_option_function<std::string>(
+        "--vertex-sizes",
+        [&size](const std::string& text) {
+            if (text != "auto" && text != "off") throw CLI::ValidationError("--vertex-sizes", fmt::format("'{}' is neither auto nor off", text));
+            size.vertex_sizes = text == "auto";
+        },
+        "target edge lengths at the input's vertices, where a .mtr file lies beside a .poly or .smesh")
+        ->type_name("auto|off")->default_str("auto");
+    command.add_option("--lfs", size.per_local_feature_size, "target edge length over the distance of features without a common point (default: none)")->type_name("K");
+    command.add_option("--curvature", size.elements_per_circle, "so many edges for a full circle of what is curved smoothly (default: none)")->type_name("N");
+    command.add_option_function<std::string>(
+        "--gradation",
+        [&size](const std::string& text) {
+            if (text == "off") size.gradation = 0;
+            else if (!CLI::detail::lexical_cast(text, size.gradation)) throw CLI::ValidationError("--gradation", fmt::format("must be a number or off, not '{}'", text));
+        },
+        "sizes grow by at most this per unit of distance; off: as they like")
+        ->type_name("G|off")->default_str(fmt::format("{}", size.gradation));
+    command.add_option("--min-size", size.min_edge_length, "no size asked for counts as less than this (default: none)")->type_name("H");
+}
+
 }  // namespace
 
 SliverStrategy read_strategy(const std::string& text, const std::string& flag) {
@@ -154,6 +197,7 @@ void add_coplanar_tolerance_flag(CLI::App& command, MeshOptions& options) {
 GoalFlags add_goal_flags(CLI::App& command, MeshOptions& options) {
     command.add_option("--size", options.size.edge_length, "target edge length, in input units (default: none)")->type_name("H");
     command.add_option("--max-volume", options.size.max_volume, "bound on the volume of every tetrahedron (default: none)")->type_name("V");
+    add_size_field_flags(command, options);
     const CLI::Option* ratio = command.add_option("--max-radius-edge", options.quality.max_radius_edge_ratio, "bound on circumradius / shortest edge of every tetrahedron")
         ->type_name("RATIO")->capture_default_str();
     const CLI::Option* angle = command.add_option("--min-dihedral", options.quality.min_dihedral_angle_deg, "least dihedral angle, in degrees; 0 ignores slivers")

@@ -23,6 +23,7 @@ void add_improve_command(CLI::App& program, Command& selected) {
     add_goal_flags(command, job->options);
     add_seed_flag(command, job->options);
     add_limit_flags(command, job->options);
+    add_background_flag(command, *job);
     add_job_flags(command, *job);
     command.callback([&selected, job] {
         selected = [job](Interrupt& interrupt) {
@@ -31,6 +32,7 @@ void add_improve_command(CLI::App& program, Command& selected) {
             const auto read = [&] {
                 mesh = read_mesh(job->inputs[0]);
                 plc = read_plc(job->inputs[1]);
+                read_background(*job);
             };
             return produce_mesh(*job, interrupt, read, [&](const RunControl& control) { return improve(mesh, plc, job->options, control); });
         };

@@ -64,6 +64,13 @@ Json to_json(const MeshOptions& options) {
     json["min_dihedral_boundary_deg"] = or_null(options.quality.min_dihedral_boundary_deg);
     json["edge_length"] = or_null(options.size.edge_length);
     json["max_volume"] = or_null(options.size.max_volume);
+    json["entity_sizes"] = Json::array();
+    for (const EntitySize& size : options.size.entities) json["entity_sizes"].push_back({{"entity", to_string(size.kind)}, {"id", size.id}, {"edge_length", size.edge_length}});
+    json["vertex_sizes"] = options.size.vertex_sizes ? "auto" : "off";
+    json["per_local_feature_size"] = or_null(options.size.per_local_feature_size);
+    json["elements_per_circle"] = or_null(options.size.elements_per_circle);
+    json["gradation"] = options.size.gradation;
+    json["min_edge_length"] = or_null(options.size.min_edge_length);
     json["max_vertices"] = or_null(options.limits.max_vertices);
     json["time_limit_seconds"] = options.limits.time ? Json(static_cast<double>(options.limits.time->count()) / 1000) : Json(nullptr);
     json["max_memory_bytes"] = or_null(options.limits.memory_bytes);

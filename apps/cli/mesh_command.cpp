@@ -20,11 +20,16 @@ void add_mesh_command(CLI::App& program, Command& selected) {
     job->inputs.resize(1);
     command.add_option("INPUT", job->inputs[0], "domain: .poly .smesh .off .stl .obj .ply .mesh")->required()->type_name("");
     add_mesh_flags(command, job->options);
+    add_background_flag(command, *job);
     add_job_flags(command, *job);
     command.callback([&selected, job] {
         selected = [job](Interrupt& interrupt) {
             Plc plc;
-            return produce_mesh(*job, interrupt, [&] { plc = read_plc(job->inputs[0]); }, [&](const RunControl& control) { return generate(plc, job->options, control); });
+            const auto read = [&] {
+                plc = read_plc(job->inputs[0]);
+                read_background(*job);
+            };
+            return produce_mesh(*job, interrupt, read, [&](const RunControl& control) { return generate(plc, job->options, control); });
         };
     });
 }

@@ -9,6 +9,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <memory>
 #include <new>
 
 #include "commands.hpp"
@@ -59,6 +60,7 @@ Json header(const MeshJob& job) {
     Json json = json_header(job.command, job.inputs[0]);
     if (job.inputs.size() > 1) json["plc"] = job.inputs[1];
     json["options"] = to_json(job.options);
+    json["options"]["background"] = job.background.empty() ? Json(nullptr) : Json(job.background);
     return json;
 }
 
@@ -128,6 +130,14 @@ void add_job_flags(CLI::App& command, MeshJob& job) {
     command.add_flag("--quiet", job.quiet, "no report and no progress line; errors still go to standard error");
 }
 
+void add_background_flag(CLI::App& command, MeshJob& job) {
+    command.add_option("--background", job.background, "target edge lengths at the vertices of a mesh: .node/.ele with .mtr (default: none)")->type_name("FILE");
+}
+
+void read_background(MeshJob& job) {
+    if (!job.background.empty()) job.options.size.background = std::make_shared<const BackgroundMesh>(read_background_mesh(job.background));
+}
+
 bool goals_met(const MeshResult& result) {
     return result.termination == Termination::goals_met && result.certificate.proven() &&
            std::all_of(result.goals.begin(), result.goals.end(), [](const AskedAchieved& goal) { return goal.met; });
@@ -136,9 +146,11 @@ bool goals_met(const MeshResult& result) {
 int produce_mesh(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& read, const std::function<MeshResult(const RunControl&)>& make) {
     require_valid(job.options);
     require_valid(job.write);
-    require_mesh_outputs(job.outputs, job.inputs);
+    std::vector<std::string> inputs = job.inputs;
+    if (!job.background.empty()) inputs.push_back(job.background);
+    require_mesh_outputs(job.outputs, inputs);
     std::vector<std::string> others = job.outputs;
-    others.insert(others.end(), job.inputs.begin(), job.inputs.end());
+    others.insert(others.end(), inputs.begin(), inputs.end());
     require_report(job.json, others);
     // Programs that asked for a report get the reason in it, too.
     const auto report_error = [&](const MeshError& error) {

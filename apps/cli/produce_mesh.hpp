@@ -22,6 +22,7 @@ struct MeshJob {
     std::string command;              ///< name in reports
     std::vector<std::string> inputs;  ///< files that are read, the one that reports name first
     std::vector<std::string> outputs;
+    std::string background;           ///< a mesh with sizes; empty: none
     std::string json;
     bool quiet = false;
     MeshOptions options{};
@@ -30,6 +31,11 @@ struct MeshJob {
 
 /// -o, --msh-version, --json and --quiet.
 void add_job_flags(CLI::App& command, MeshJob& job);
+
+/// --background.
+void add_background_flag(CLI::App& command, MeshJob& job);
+/// Reads it, if there is one. @throws MeshError
+void read_background(MeshJob& job);
 
 /// Have all goals been met, with no claim refuted?
 [[nodiscard]] bool goals_met(const MeshResult& result);

@@ -7,13 +7,14 @@
 #include <stop_token>
 #include <vector>
 
+#include "wellmesh/background_mesh.hpp"
 #include "wellmesh/error.hpp"
 #include "wellmesh/plc.hpp"
 #include "wellmesh/tet_mesh.hpp"
 
 namespace wellmesh {
 
-/// Reads .off .stl .obj .ply .poly .smesh (a .node beside them as they ask), or the surface of a .mesh.
+/// Reads .off .stl .obj .ply .poly .smesh (a .node beside them as they ask; sizes of vertices from a .mtr beside .poly and .smesh), or the surface of a .mesh.
 /// @throws MeshError  cannot_read, bad_input (file, line, token).
 [[nodiscard]] Plc read_plc(const std::filesystem::path& path);
 
@@ -22,6 +23,10 @@ namespace wellmesh {
 
 /// Reads a tetrahedral mesh: MEDIT .mesh (ASCII), .node/.ele.
 [[nodiscard]] TetMesh read_mesh(const std::filesystem::path& path);
+
+/// Reads a mesh with target edge lengths at its vertices: TetGen's .node, .ele and .mtr (any of the three names them).
+/// @throws MeshError  cannot_read, bad_input (file, line, token).
+[[nodiscard]] BackgroundMesh read_background_mesh(const std::filesystem::path& path);
 
 /// Reads the weights of a mesh's vertices: MEDIT's solution format (.sol, one scalar a vertex), or the attribute of a .node.
 /// @param vertices  how many there must be. @throws MeshError  cannot_read, bad_input (file, line, token).

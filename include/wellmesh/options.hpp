@@ -5,10 +5,16 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "wellmesh/background_mesh.hpp"
+#include "wellmesh/error.hpp"
+#include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
 
@@ -55,13 +61,44 @@ struct QualityGoals {
     std::optional<double> min_dihedral_boundary_deg{};
 };
 
+/// A target edge length on a part of the input: a region, facets, segments or vertices.
+struct EntitySize {
+    EntityKind kind = EntityKind::region;  ///< region, facet, segment or vertex
+    std::int32_t id = 0;                   ///< the region's id; the marker of facets, segments and vertices
+    double edge_length = 0;                ///< input units, above 0
+};
+
+/// How large tetrahedra are to be. The smallest of all that is asked for at a place counts, and sizes grow with the distance from there by at most
+/// `gradation` (docs/sizing.md). Lengths in input units.
 struct SizeGoals {
-    /// Target edge length h in input units: the mean edge length of a uniform mesh of a cube is within 10 % of h.
-    /// Realised as the circumradius bound R <= kCircumradiusPerEdgeLength * h (src/refinement/sizing.hpp). Empty: none.
+    /// Target edge length h everywhere: the mean edge length of a uniform mesh of a cube is within 10 % of h.
+    /// Realised as the circumradius bound R <= kCircumradiusPerEdgeLength * h (src/sizing/size_field.hpp). Empty: none.
     std::optional<double> edge_length{};
     /// Bound on the volume of every tetrahedron, in cubed input units. Empty: none.
     std::optional<double> max_volume{};
+    /// Target edge lengths on parts of the input.
+    std::vector<EntitySize> entities{};
+    /// Whether Plc::vertex_sizes count. They are linear in the Delaunay tetrahedra of the input's vertices.
+    bool vertex_sizes = true;
+    /// Target edge length at a point of the domain, above 0; infinite: nothing is asked there. Called on the caller's thread, a few times for each
+    /// vertex that the mesh will have; details smaller than kCallbackResolution of the domain may be missed. An exception thrown from it ends the run
+    /// and propagates. Empty: none.
+    std::function<double(const Vec3&)> at{};
+    /// Target edge lengths on a mesh. Null: none.
+    std::shared_ptr<const BackgroundMesh> background{};
+    /// Target edge length over local feature size: the radius of the smallest ball about a point that meets two vertices, segments or facets without a
+    /// common point. Empty: none.
+    std::optional<double> per_local_feature_size{};
+    /// So many edges for a full circle of the curvature of smooth surfaces and curves, which the input has as facets and segments. Empty: none.
+    std::optional<double> elements_per_circle{};
+    /// Target edge lengths grow by at most this per unit of distance; 0: without a limit. No edge length that is asked for nowhere is limited: input
+    /// details make small tetrahedra around them that grow as they like.
+    double gradation = 0.3;
+    /// No goal above asks for edges shorter than this, or for volumes below a tetrahedron's of that size. Details of the input may. Empty: none.
+    std::optional<double> min_edge_length{};
 };
+/// Of the larger sides of the domain's box: spacing of the first samples of SizeGoals::at.
+inline constexpr double kCallbackResolution = 1.0 / 32;
 
 struct Limits {
     std::optional<std::uint64_t> max_vertices{};  ///< of the whole mesh, input vertices included

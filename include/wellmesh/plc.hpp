@@ -45,6 +45,7 @@ enum class MergeRule { none, triangles, all };
 struct Plc {
     std::vector<Vec3> vertices;
     std::vector<std::int32_t> vertex_markers;  ///< empty, or one a vertex
+    std::vector<double> vertex_sizes;          ///< target edge lengths, input units: empty, or one a vertex; 0: none
     std::vector<PlcFacet> facets;
     std::vector<PlcSegment> segments;
     std::vector<Vec3> hole_seeds;

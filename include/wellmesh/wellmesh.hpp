@@ -2,6 +2,7 @@
 // Everything public.
 #pragma once
 
+#include "wellmesh/background_mesh.hpp"
 #include "wellmesh/certificate.hpp"
 #include "wellmesh/delaunay.hpp"
 #include "wellmesh/diagnosis.hpp"

@@ -49,9 +49,11 @@ bool StarGrowth::is_within_bounds(TetFace link_face) const {
     const Vec3 &a = mesh_.point(c[0]), &b = mesh_.point(c[1]), &d = mesh_.point(c[2]), &p = mesh_.point(p_);
     const double ratio_squared = radius_edge_squared(a, b, d, p);
     if (!(ratio_squared <= bounds_.max_radius_edge_ratio * bounds_.max_radius_edge_ratio)) return false;
+    const double squared_radius = ratio_squared * shortest_edge_squared(a, b, d, p);
+    if (bounds_.max_squared_circumradius_at && !(squared_radius <= bounds_.max_squared_circumradius_at(0.25 * ((a + b) + (d + p))))) return false;
     const auto size = bounds_.size_of_region.find(mesh_.region(link_face.tet()));
     if (size == bounds_.size_of_region.end()) return true;
-    return ratio_squared * shortest_edge_squared(a, b, d, p) <= size->second.max_squared_circumradius && six_volumes(a, b, d, p) <= 6 * size->second.max_volume;
+    return squared_radius <= size->second.max_squared_circumradius && six_volumes(a, b, d, p) <= 6 * size->second.max_volume;
 }
 
 void StarGrowth::add_face(TetFace inside, bool original) {

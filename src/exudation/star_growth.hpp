@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <vector>
@@ -25,6 +26,7 @@ struct ExudationBounds {
         double max_volume = std::numeric_limits<double>::infinity();
     };
     std::map<std::int32_t, Size> size_of_region{};  ///< regions that are not there have none
+    std::function<double(const Vec3&)> max_squared_circumradius_at{};  ///< for tetrahedra by their centroids, where that varies. Empty: none
 };
 
 /// A weight and what it does to the mesh. `cosine` values are those of smallest dihedral angles: larger is worse.

@@ -103,6 +103,12 @@ TetMesh read_mesh(const std::filesystem::path& path) {
     unknown_format(ErrorCode::cannot_read, Stage::read, "read a mesh from", path, ".mesh .node .ele");
 }
 
+BackgroundMesh read_background_mesh(const std::filesystem::path& path) {
+    const std::string extension = io::lower_case_extension(path);
+    if (extension == ".node" || extension == ".ele" || extension == ".mtr") return io::read_tetgen_background(path);
+    unknown_format(ErrorCode::cannot_read, Stage::read, "read sizes from", path, ".node .ele .mtr");
+}
+
 std::vector<double> read_weights(const std::filesystem::path& path, std::size_t vertices) {
     const std::string extension = io::lower_case_extension(path);
     if (extension != ".sol" && extension != ".node") unknown_format(ErrorCode::cannot_read, Stage::read, "read weights from", path, ".sol .node");

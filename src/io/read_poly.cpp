@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // TetGen's .poly and .smesh: points (or none, then the .node file beside), facets, hole seeds, region seeds. Missing hole and region
-// parts mean none. What follows the region part is passed over: such files carry notes there.
+// parts mean none. Sizes of the points are read from a .mtr beside, if there is one. What follows the region part is passed over: such files carry notes there.
 // A facet that consists of two-vertex polygons alone has no area: it is read as segments with the facet's marker.
 #include <algorithm>
 #include <string>
@@ -37,6 +37,9 @@ public:
         plc_.first_number = numbering_.first_number();
         plc_.relative_rounding = precision_.relative_rounding();
         normalise_zeros(plc_.vertices);
+        std::filesystem::path sizes = in_.source().path;
+        sizes.replace_extension(".mtr");
+        if (std::filesystem::exists(sizes)) plc_.vertex_sizes = read_mtr(read_source(sizes), plc_.vertices.size());
         return std::move(plc_);
     }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io/source_file.hpp"
+#include "wellmesh/background_mesh.hpp"
 #include "wellmesh/plc.hpp"
 #include "wellmesh/tet_mesh.hpp"
 
@@ -25,6 +26,11 @@ namespace wellmesh::io {
 [[nodiscard]] TetMesh read_medit_mesh(const SourceFile& source);
 /// .node and .ele, and .face and .edge where they exist. @param path  the .node or the .ele file
 [[nodiscard]] TetMesh read_tetgen_mesh(const std::filesystem::path& path);
+
+/// Sizes of a .mtr file. @param points  how many there must be
+[[nodiscard]] std::vector<double> read_mtr(const SourceFile& source, std::size_t points);
+/// .node, .ele and .mtr. @param path  any of the three
+[[nodiscard]] BackgroundMesh read_tetgen_background(const std::filesystem::path& path);
 
 [[nodiscard]] std::vector<double> read_medit_weights(const SourceFile& source);  ///< .sol
 [[nodiscard]] std::vector<double> read_node_weights(const SourceFile& source);   ///< first attribute of a .node

@@ -16,6 +16,7 @@
 #include "pipeline/extract_mesh.hpp"
 #include "pipeline/list_exemptions.hpp"
 #include "pipeline/report_goals.hpp"
+#include "pipeline/report_sizes.hpp"
 #include "pipeline/theory_run.hpp"
 #include "predicates/predicates.hpp"
 #include "refinement/lattice_seeding.hpp"
@@ -30,6 +31,16 @@ namespace {
 
 /// Of memory at the peak, of a large mesh: measured TODO.
 constexpr double kBytesPerVertex = 1000;
+
+void check_vertex_sizes(const Plc& plc) {
+    const std::vector<double>& sizes = plc.vertex_sizes;
+    if (sizes.empty()) return;
+    const auto fail = [](const std::string& what) { throw MeshError(ErrorCode::bad_input, Stage::validate, what); };
+    if (sizes.size() != plc.vertices.size()) fail(fmt::format("there are {} sizes of vertices, but {} vertices", sizes.size(), plc.vertices.size()));
+    for (std::size_t v = 0; v < sizes.size(); ++v)
+        if (!(sizes[v] >= 0) || !std::isfinite(sizes[v]))
+            fail(fmt::format("the size of vertex {} is {}; it must be a finite number above 0, or 0 for none", v + plc.first_number, sizes[v]));
+}
 
 class Generator {
 public:
@@ -67,11 +78,14 @@ public:
 
 private:
     MeshResult run() {
+        check_vertex_sizes(plc_);
         const std::uint64_t exact_before = exact_predicate_calls();
         const ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_, guard_.checkpoint()); });
         require_room(valid.vertices.size());
         result_.statistics.coplanar_tolerance = valid.coplanar_tolerance;
         note_defects(valid);
+        if (options_.size.vertex_sizes && std::any_of(plc_.vertex_sizes.begin(), plc_.vertex_sizes.end(), [](double h) { return h > 0; }))
+            result_.statistics.notes.emplace_back("the input states sizes at its vertices, which count");
         try {
             fill(valid);
         } catch (const MeshError& e) {
@@ -105,7 +119,7 @@ private:
             if (!valid.acute_features.empty()) throw acute_failure(valid, e);  // the paper assumes that there are none
             throw;
         }
-        report_goals(result_, options_, valid);
+        report_goals(result_, options_, valid, size_rows_);
         result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
         return std::move(result_);
     }
@@ -134,12 +148,12 @@ private:
             if (given_) result_.statistics.given->added_for_conformity = mesh.vertex_count() - before;
         });
         Refiner refiner(mesh, boundary, guard_, options_);
-        refuse_hopeless(expected_vertices(valid, refiner.sizes()));
+        refuse_hopeless(refiner.sizes().expected_vertices());
         refiner.guard_edges();
         const bool certified = options_.mode == Mode::certified;
         if (certified) set_sliver_rule(refiner, options_);
         else prepare_refinement(refiner, boundary, options_);
-        if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 300'000 + 4 * expected_vertices(valid, refiner.sizes()));
+        if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 300'000 + 4 * static_cast<std::uint64_t>(std::min(refiner.sizes().expected_vertices(), 4e9)));
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
             // The published ways have no seeds: they begin with what Delaunay refinement makes.
@@ -164,6 +178,7 @@ private:
         std::vector<TetId> order;
         result_.mesh = extract_mesh(mesh, order);
         result_.exemptions = list_exemptions(mesh, order, refiner.exemptions(), options_);
+        size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());
         if (verdict == RunGuard::Verdict::go_on && exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {
                 const ExudationReport report = exude(result_.mesh, options_.quality.min_dihedral_angle_deg, exudation_bounds(valid, refiner.sizes()), guard_);
@@ -176,14 +191,16 @@ private:
     }
 
     /// Goals that the mesh has met stay met; sizes within the tolerance that moving vertices has, too.
-    [[nodiscard]] ExudationBounds exudation_bounds(const ValidPlc& valid, const std::vector<CellSize>& sizes) const {
+    [[nodiscard]] ExudationBounds exudation_bounds(const ValidPlc& valid, const SizeField& sizes) const {
         ExudationBounds bounds;
         bounds.max_radius_edge_ratio = options_.quality.max_radius_edge_ratio;
-        for (std::size_t c = 0; c < sizes.size(); ++c) {
+        const double slack = kSizeTolerance * kSizeTolerance;
+        for (std::size_t c = 0; c < valid.cells.size(); ++c) {
             ExudationBounds::Size& size = bounds.size_of_region[valid.cells[c].region];
-            size.max_squared_circumradius = std::min(size.max_squared_circumradius, kSizeTolerance * kSizeTolerance * sizes[c].max_squared_circumradius);
-            size.max_volume = std::min(size.max_volume, sizes[c].max_volume);
+            size.max_squared_circumradius = std::min(size.max_squared_circumradius, slack * sizes.of_cell(CellId{c}).max_squared_circumradius);
+            size.max_volume = std::min(size.max_volume, sizes.of_cell(CellId{c}).max_volume);
         }
+        if (sizes.varies()) bounds.max_squared_circumradius_at = [&sizes, slack](const Vec3& p) { return slack * sizes.at(p, CellId{0}).max_squared_circumradius; };
         return bounds;
     }
 
@@ -201,29 +218,19 @@ private:
     }
 
     /// A size that asks for more than a mesh can hold is told at once, not when memory ends. A limit of the user's may end the run before.
-    void refuse_hopeless(std::uint64_t expected) const {
-        constexpr std::uint64_t kMostVertices = (std::uint64_t{1} << 30) / 6;  // about six tetrahedra a vertex, 2^30 of them
+    void refuse_hopeless(double expected) const {
+        constexpr double kMostVertices = (1U << 30U) / 6.0;  // about six tetrahedra a vertex, 2^30 of them
         if (options_.limits.max_vertices || options_.limits.time) return;
-        const auto vertices = static_cast<double>(expected);
         if (expected > kMostVertices)
             throw MeshError(ErrorCode::mesh_too_large, Stage::refine,
-                            fmt::format("the size asks for about {:.2g} vertices; a mesh can have {:.2g}: ask for a coarser one, or set a limit", vertices,
-                                        static_cast<double>(kMostVertices)));
+                            fmt::format("the size asks for about {:.2g} vertices; a mesh can have {:.2g}: ask for a coarser one, or set a limit", expected, kMostVertices));
         // What is beyond the limit by less is begun: the estimate is no better.
         constexpr double kSurelyTooMuch = 1.5;
         const auto& memory = options_.limits.memory_bytes;
-        if (memory && vertices * kBytesPerVertex > kSurelyTooMuch * static_cast<double>(*memory))
+        if (memory && expected * kBytesPerVertex > kSurelyTooMuch * static_cast<double>(*memory))
             throw MeshError(ErrorCode::mesh_too_large, Stage::refine,
                             fmt::format("the size asks for about {:.2g} vertices, which take about {:.2g} GiB, and {:.2g} are allowed: ask for a coarser one, or set another limit",
-                                        vertices, vertices * kBytesPerVertex / (1 << 30), static_cast<double>(*memory) / (1 << 30)));
-    }
-
-    /// What the size goals alone ask for: refinement makes about 0.75 vertices a cubed circumradius bound, 0.4 a volume bound.
-    static std::uint64_t expected_vertices(const ValidPlc& valid, const std::vector<CellSize>& sizes) {
-        double n = 0;
-        for (std::size_t c = 0; c < sizes.size(); ++c)
-            if (valid.cells[c].filled) n += valid.cells[c].volume * (0.75 / std::pow(sizes[c].max_squared_circumradius, 1.5) + 0.4 / sizes[c].max_volume);
-        return static_cast<std::uint64_t>(std::min(n, 4e9));
+                                        expected, expected * kBytesPerVertex / (1 << 30), static_cast<double>(*memory) / (1 << 30)));
     }
 
     /// Delaunay, conforming and Gabriel hold or the run fails; shape and size are asked and achieved instead.
@@ -292,6 +299,7 @@ private:
     const RunControl& control_;
     RunGuard guard_;
     MeshResult result_;
+    std::vector<AskedAchieved> size_rows_;
     std::uint64_t vertices_ = 0, tets_ = 0;
 };
 

@@ -10,7 +10,7 @@
 #include "core/vec3_math.hpp"
 #include "pipeline/theory_run.hpp"
 #include "quality/tet_shape.hpp"
-#include "refinement/sizing.hpp"
+#include "sizing/size_field.hpp"
 
 namespace wellmesh {
 namespace {
@@ -68,7 +68,7 @@ void report_slivers(MeshResult& result, const MeshOptions& options) {
 
 }  // namespace
 
-void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc& plc) {
+void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc& plc, const std::vector<AskedAchieved>& sizes) {
     const ShapeStatistics& all = result.certificate.all;
     for (const VertexCarrier& c : result.mesh.vertex_carriers) {
         switch (c.kind) {
@@ -85,28 +85,31 @@ void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc
     result.goals.push_back(radius_edge);
     report_slivers(result, options);
     if (options.size.edge_length) {
-        const double h = *options.size.edge_length;
+        const double h = std::max(*options.size.edge_length, options.size.min_edge_length.value_or(0));
         const double bound = kCircumradiusPerEdgeLength * h * (1 + 1e-9);
         AskedAchieved size{"edge length (mean)", h, all.mean_edge, true, 0, {}};
         count_misses(result, size, [&](const TetShape& s, std::int32_t) { return s.circumradius - bound * kSizeTolerance; }, false);
         result.goals.push_back(size);
     }
+    const double least_volume = options.size.min_edge_length ? volume_of_edge_length(*options.size.min_edge_length) : 0;
     if (options.size.max_volume) {
-        const double bound = *options.size.max_volume * (1 + 1e-9);
-        AskedAchieved volume{"max volume", *options.size.max_volume, all.max_volume, true, 0, {}};
+        const double asked = std::max(*options.size.max_volume, least_volume), bound = asked * (1 + 1e-9);
+        AskedAchieved volume{"max volume", asked, all.max_volume, true, 0, {}};
         count_misses(result, volume, [&](const TetShape& s, std::int32_t) { return s.volume - bound; }, false);
         result.goals.push_back(volume);
     }
     for (const ValidCell& c : plc.cells) {
         if (!c.filled || !(c.max_volume > 0)) continue;
-        AskedAchieved volume{fmt::format("max volume in region {}", c.region), c.max_volume, 0, true, 0, {}};
+        const double asked = std::max(c.max_volume, least_volume);
+        AskedAchieved volume{fmt::format("max volume in region {}", c.region), asked, 0, true, 0, {}};
         count_misses(result, volume, [&](const TetShape& s, std::int32_t region) {
             if (region != c.region) return 0.0;
             volume.achieved = std::max(volume.achieved, s.volume);
-            return s.volume - c.max_volume * (1 + 1e-9);
+            return s.volume - asked * (1 + 1e-9);
         }, false);
         result.goals.push_back(volume);
     }
+    result.goals.insert(result.goals.end(), sizes.begin(), sizes.end());
     if (result.termination == Termination::goals_met &&
         std::any_of(result.goals.begin(), result.goals.end(), [](const AskedAchieved& g) { return !g.met; }))
         result.termination = Termination::goals_unmet;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "validation/valid_plc.hpp"
 #include "wellmesh/options.hpp"
 #include "wellmesh/result.hpp"
@@ -8,6 +10,7 @@
 namespace wellmesh {
 
 /// Fills result.goals and, where no budget ended the run, result.termination from the finished mesh and its certificate.
-void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc& plc);
+/// @param sizes  what report_sizes() says of goals that differ from place to place
+void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc& plc, const std::vector<AskedAchieved>& sizes);
 
 }  // namespace wellmesh

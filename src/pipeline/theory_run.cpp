@@ -17,7 +17,9 @@ namespace {
 constexpr unsigned kCertifiedCandidates = 400;
 
 bool has_size(const MeshOptions& options, const ValidPlc& plc) {
-    return options.size.edge_length || options.size.max_volume ||
+    const SizeGoals& size = options.size;
+    return size.edge_length || size.max_volume || !size.entities.empty() || size.at || size.background || size.per_local_feature_size || size.elements_per_circle ||
+           (size.vertex_sizes && !plc.vertex_sizes.empty()) ||
            std::any_of(plc.cells.begin(), plc.cells.end(), [](const ValidCell& c) { return c.filled && c.max_volume > 0; });
 }
 

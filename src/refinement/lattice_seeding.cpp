@@ -2,6 +2,7 @@
 #include "refinement/lattice_seeding.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -26,6 +27,11 @@ constexpr double kLeastThickness = 1;
 /// Of the lattice constant: takes exact symmetry away, costs nothing in shape.
 constexpr double kLatticeJitter = 1e-4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Least part of the spacing allowed at which leaves are worth it where the size varies: the lattice has 0.349 vertices a cubed radius of its own, refinement
+/// makes 0.75 of the bound's, and (0.349 / 0.75)^(1/3) / kLatticeScale = 0.82.
+constexpr double kLeastUse = 0.82;
+/// Ratios of spacings modulo 2 are told apart to a part of 2^(1/64) - 1, one per cent.
+constexpr std::size_t kPhases = 64;
 
 /// Squared distance from p to the triangle: to its plane if the foot of the perpendicular lies inside, else to the nearest edge.
 double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -44,9 +50,9 @@ double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
 
 }  // namespace
 
-LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const std::vector<CellSize>& sizes)
-    : mesh_(mesh), boundary_(boundary), guard_(guard), radius_(sizes.size(), kInfinity), spacing_(sizes.size(), kInfinity) {
-    std::vector<double> surface(sizes.size(), 0);
+LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes)
+    : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(sizes), radius_(mesh.plc().cells.size(), kInfinity), spacing_(radius_.size(), kInfinity), is_thin_(radius_.size(), 0) {
+    std::vector<double> surface(radius_.size(), 0);
     for (const ValidFacet& f : mesh.plc().facets) {
         double area = 0;
         for (const auto& t : f.triangles) {
@@ -55,19 +61,31 @@ LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, Ru
         }
         for (const CellId c : f.cells) surface[c.index()] += area;
     }
-    for (std::size_t c = 0; c < sizes.size(); ++c) {
+    for (std::size_t c = 0; c < radius_.size(); ++c) {
         if (!mesh.is_filled(CellId{c})) continue;
         // Twelve tetrahedra share the lattice's cube.
-        const double by_volume = std::cbrt(12 * sizes[c].max_volume);
-        radius_[c] = std::min(std::sqrt(sizes[c].max_squared_circumradius), kLatticeCircumradius * by_volume);
-        const double spacing = kLatticeScale * radius_[c] / kLatticeCircumradius;
-        if (mesh.plc().cells[c].volume >= kLeastThickness * spacing * surface[c]) spacing_[c] = spacing;
-        else radius_[c] = kInfinity;
+        const TetSize& size = sizes.of_cell(CellId{c});
+        const double by_volume = std::cbrt(12 * size.max_volume);
+        radius_[c] = std::min(std::sqrt(size.max_squared_circumradius), kLatticeCircumradius * by_volume);
+        spacing_[c] = kLatticeScale * radius_[c] / kLatticeCircumradius;
+        // Where sizes vary the finest decide whether the cell is thick: a lattice that has no room keeps away from the boundary by itself.
+        const double finest = sizes.varies() ? std::min(radius_[c], kCircumradiusPerEdgeLength * sizes.smallest()) : radius_[c];
+        is_thin_[c] = !(mesh.plc().cells[c].volume >= kLeastThickness * (kLatticeScale * finest / kLatticeCircumradius) * surface[c]);
+        if (is_thin_[c] != 0) radius_[c] = spacing_[c] = kInfinity;
     }
 }
 
-double LatticeSeeder::radius_bound(TetId t) const {
-    return mesh_.tets().is_finite(t) && mesh_.in_domain(t) ? radius_[mesh_.cell(t).index()] : kInfinity;
+double LatticeSeeder::radius_at(const Vec3& p, CellId c) const {
+    if (!sizes_.varies()) return radius_[c.index()];
+    return is_thin_[c.index()] != 0 ? kInfinity : std::min(radius_[c.index()], kCircumradiusPerEdgeLength * sizes_.edge_length(p, c));
+}
+
+double LatticeSeeder::spacing_at(const Vec3& p, CellId c) const {
+    return sizes_.varies() ? kLatticeScale * radius_at(p, c) / kLatticeCircumradius : spacing_[c.index()];
+}
+
+double LatticeSeeder::radius_bound(TetId t, const Vec3& p) const {
+    return mesh_.tets().is_finite(t) && mesh_.in_domain(t) ? radius_at(p, mesh_.cell(t)) : kInfinity;
 }
 
 /// Circumspheres of tetrahedra at a subsegment or subface are at least as large as its own: splitting it is never in vain.
@@ -83,20 +101,24 @@ bool LatticeSeeder::split_boundary(double coarseness) {
         for (std::size_t i = 0; i < tets.slots(); ++i) {
             const TetId t{i};
             if (!tets.is_finite(t) || !mesh_.has_labels(t)) continue;
-            const double bound = coarseness * radius_bound(t);
+            const double bound = sizes_.varies() ? 0 : coarseness * radius_bound(t, {});
             if (bound == kInfinity) continue;
+            const auto is_beyond = [&](double radius, const Vec3& p) { return radius > (sizes_.varies() ? coarseness * radius_bound(t, p) : bound); };
             const TetLabels& l = mesh_.labels(t);
             const auto& c = tets.corners(t);
             for (unsigned e = 0; e < 6; ++e) {
                 const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
-                if (l.segments[e].valid() && distance(mesh_.point(a), mesh_.point(b)) > 2 * bound) segments.push_back({std::min(a, b), std::max(a, b), l.segments[e]});
+                if (!l.segments[e].valid()) continue;
+                const Vec3 &p = mesh_.point(a), &q = mesh_.point(b);
+                if (is_beyond(distance(p, q) / 2, 0.5 * (p + q))) segments.push_back({std::min(a, b), std::max(a, b), l.segments[e]});
             }
             for (unsigned f = 0; f < 4; ++f) {
                 if (!l.facets[f].valid()) continue;
                 const auto fc = tets.face_corners(TetFace{t, f});
                 double radius = 0;
-                circumcentre(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), &radius);
-                if (radius > bound) faces.push_back({fc, l.facets[f]});
+                const Vec3 &p = mesh_.point(fc[0]), &q = mesh_.point(fc[1]), &r = mesh_.point(fc[2]);
+                circumcentre(p, q, r, &radius);
+                if (is_beyond(radius, (1.0 / 3) * (p + q + r))) faces.push_back({fc, l.facets[f]});
             }
         }
         const SplitRequest request{InsertionReason::boundary_by_size, VertexId{}};
@@ -122,12 +144,13 @@ std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
     for (std::size_t i = 0; i < tets.slots(); ++i) {
         const TetId t{i};
         if (!tets.is_finite(t) || !mesh_.has_labels(t)) continue;
-        const double spacing = mesh_.in_domain(t) ? spacing_[mesh_.cell(t).index()] : kInfinity;
-        if (spacing == kInfinity) continue;
+        if (!mesh_.in_domain(t)) continue;
         for (unsigned f = 0; f < 4; ++f) {
             if (!mesh_.labels(t).facets[f].valid()) continue;
             const auto fc = tets.face_corners(TetFace{t, f});
             const Vec3 &a = mesh_.point(fc[0]), &b = mesh_.point(fc[1]), &c = mesh_.point(fc[2]);
+            const double spacing = spacing_at((1.0 / 3) * (a + b + c), mesh_.cell(t));
+            if (spacing == kInfinity) continue;
             out.push_back({{Vec3{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
                             Vec3{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}},
                            spacing});
@@ -153,9 +176,13 @@ void LatticeSeeder::build(GradedOctree& tree, std::uint32_t node, const std::vec
         spacing = std::min(spacing, faces_[f].spacing);
     }
     const TetId at_centre = mesh_.triangulation().locate(0.5 * (box.lo + hi), near);
-    if (mesh_.tets().is_finite(at_centre) && mesh_.in_domain(at_centre)) spacing = std::min(spacing, spacing_[mesh_.cell(at_centre).index()]);
+    const double inside = mesh_.tets().is_finite(at_centre) && mesh_.in_domain(at_centre) ? spacing_at(0.5 * (box.lo + hi), mesh_.cell(at_centre)) : kInfinity;
+    spacing = std::min(spacing, inside);
     if (spacing == kInfinity) return;
-    if (box.side <= spacing * (1 + 1e-9) || tree.depth(node) == GradedOctree::kMaxDepth) return tree.use(node);
+    if (box.side <= spacing * (1 + 1e-9) || tree.depth(node) == GradedOctree::kMaxDepth) {
+        if (!sizes_.varies() || box.side >= kLeastUse * (inside < kInfinity ? inside : spacing)) tree.use(node);
+        return;
+    }
     const std::uint32_t first = tree.split(node);
     for (std::uint32_t k = 0; k < 8; ++k) build(tree, first + k, here, at_centre);
 }
@@ -176,17 +203,48 @@ bool LatticeSeeder::is_clear(const Vec3& p, double clearance) const {
     return true;
 }
 
-std::uint64_t LatticeSeeder::seed() {
-    // The lattice constant of the cell that will have most vertices is realised exactly, the others' up to a power of two.
+/// The lattice constant that most vertices will have is realised exactly, the others up to a power of two.
+double LatticeSeeder::most_used_spacing() const {
     double base = kInfinity, most = 0;
-    for (std::size_t c = 0; c < spacing_.size(); ++c) {
-        if (spacing_[c] == kInfinity) continue;
-        const double expected = mesh_.plc().cells[c].volume / (spacing_[c] * spacing_[c] * spacing_[c]);
-        if (expected > most) {
-            most = expected;
-            base = spacing_[c];
+    if (!sizes_.varies()) {
+        for (std::size_t c = 0; c < spacing_.size(); ++c) {
+            if (spacing_[c] == kInfinity) continue;
+            const double expected = mesh_.plc().cells[c].volume / (spacing_[c] * spacing_[c] * spacing_[c]);
+            if (expected > most) {
+                most = expected;
+                base = spacing_[c];
+            }
+        }
+        return base;
+    }
+    // Spacings modulo 2: each allows lattices a little finer, for so many vertices less.
+    std::array<double, kPhases> vertices{}, coarsest{};
+    coarsest.fill(kInfinity);
+    for (const SizeField::Share& share : sizes_.shares()) {
+        if (!(share.edge_length < kInfinity)) continue;
+        const double spacing = kLatticeScale * kCircumradiusPerEdgeLength * share.edge_length / kLatticeCircumradius;
+        const double octave = std::log2(spacing);
+        const auto phase = static_cast<std::size_t>((octave - std::floor(octave)) * kPhases) % kPhases;
+        vertices[phase] += share.vertices;
+        coarsest[phase] = std::min(coarsest[phase], spacing);
+    }
+    for (std::size_t phase = 0; phase < kPhases; ++phase) {
+        double saved = 0;
+        for (std::size_t finer = 0; finer < kPhases; ++finer) {
+            const double ratio = std::exp2(-static_cast<double>(finer) / kPhases);  // of this lattice's spacing to one allowed
+            if (ratio < kLeastUse) break;
+            saved += vertices[(phase + finer) % kPhases] * (1 - std::pow(kLeastUse / ratio, 3));
+        }
+        if (saved > most && coarsest[phase] < kInfinity) {
+            most = saved;
+            base = coarsest[phase];
         }
     }
+    return base;
+}
+
+std::uint64_t LatticeSeeder::seed() {
+    const double base = most_used_spacing();
     if (base == kInfinity) return 0;
     // From coarse to fine: vertices on an empty domain's boundary would all be neighbours of each other.
     constexpr double kCoarsest = 8;
@@ -236,10 +294,12 @@ LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near) {
     Triangulation& tri = mesh_.triangulation();
     near = tri.locate(p, near);
     const CellId cell = mesh_.cell(near);
-    if (!mesh_.tets().is_finite(near) || !mesh_.in_domain(near) || spacing_[cell.index()] == kInfinity) return Outcome::refused;
+    if (!mesh_.tets().is_finite(near) || !mesh_.in_domain(near)) return Outcome::refused;
+    const double radius = radius_at(p, cell);
+    if (radius == kInfinity) return Outcome::refused;
     if (!tri.find_conflict_cavity(p, near, cavity_)) return Outcome::refused;
     const Placement where = Placement::in_cell(cell);
-    if (!is_clear(p, kClearance * radius_[cell.index()])) return Outcome::refused;
+    if (!is_clear(p, kClearance * radius)) return Outcome::refused;
     if (boundary_.ball_around(cavity_).valid()) return Outcome::refused;
     boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
     if (!encroached_segments_.empty() || !encroached_faces_.empty()) return Outcome::encroaches;

@@ -11,14 +11,15 @@
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
 #include "refinement/graded_octree.hpp"
-#include "refinement/sizing.hpp"
+#include "sizing/size_field.hpp"
 
 namespace wellmesh {
 
 class LatticeSeeder {
 public:
-    /// @param sizes  by cell; cells without a bound stay empty
-    LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const std::vector<CellSize>& sizes);
+    /// @param sizes  must outlive this; where nothing is asked it stays empty, and so it does where a field varies and no lattice of the octree's would be
+    ///               about as large as it may.
+    LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes);
 
     /// Splits subsegments and subfaces that no tetrahedron within its bound could have, then inserts the lattice's vertices, except those
     /// that lie close to the boundary or encroach upon it. The mesh conforms afterwards. @throws as BoundaryRefiner::conform does.
@@ -28,7 +29,7 @@ public:
 private:
     struct Face {
         std::array<Vec3, 2> box{};
-        double spacing = 0;  ///< the smaller one of the cells at its sides
+        double spacing = 0;  ///< the smaller one of the cells at its sides, at its middle
     };
 
     enum class Outcome : std::uint8_t { inserted, encroaches, refused };
@@ -38,7 +39,10 @@ private:
     [[nodiscard]] bool may_go_on(std::uint64_t waiting) { return guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting) == RunGuard::Verdict::go_on; }
     [[nodiscard]] std::vector<LatticePoint> find_lattice(double base);
     Outcome insert(const Vec3& p, TetId& near);
-    [[nodiscard]] double radius_bound(TetId t) const;
+    [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;
+    [[nodiscard]] double spacing_at(const Vec3& p, CellId c) const;
+    [[nodiscard]] double radius_bound(TetId t, const Vec3& p) const;
+    [[nodiscard]] double most_used_spacing() const;
     void build(GradedOctree& tree, std::uint32_t node, const std::vector<std::uint32_t>& faces, TetId near);
     [[nodiscard]] std::vector<Face> list_faces() const;
     [[nodiscard]] bool is_clear(const Vec3& p, double distance) const;
@@ -46,8 +50,10 @@ private:
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
-    std::vector<double> radius_;   // by cell: circumradius bound; infinite: none
-    std::vector<double> spacing_;  // by cell: lattice constant
+    const SizeField& sizes_;
+    std::vector<double> radius_;   // by cell: circumradius bound that is the same all over it; infinite: none
+    std::vector<double> spacing_;  // by cell: lattice constant of that
+    std::vector<char> is_thin_;    // by cell: nothing is done in it
     std::vector<Face> faces_;
     bool stopped_ = false;
     Cavity cavity_;

@@ -21,10 +21,18 @@ constexpr double kJudgeWithin = 1.5;
 constexpr double kFlatRadiusEdge = 1e6;
 constexpr double kFlatVolume = 1e-10;  // of the cubed longest edge: dihedral angles of about 1e-8 degrees
 
+SizeFieldDomain sampled_domain(const ConformingMesh& mesh, RunGuard& guard) {
+    const auto cell_at = [&mesh, near = TetId{}](const Vec3& p) mutable {
+        near = mesh.triangulation().locate(p, near);
+        return mesh.tets().is_finite(near) ? mesh.cell(near) : CellId{0};
+    };
+    return {cell_at, [&mesh, &guard] { return guard.poll(mesh.vertex_count(), mesh.tets().live(), 0) == RunGuard::Verdict::go_on; }};
+}
+
 }  // namespace
 
 Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options)
-    : mesh_(mesh), boundary_(boundary), guard_(guard), exemptions_(mesh, boundary.acute()), sizes_(cell_sizes(mesh.plc(), options.size)), max_radius_edge_(options.quality.max_radius_edge_ratio) {
+    : mesh_(mesh), boundary_(boundary), guard_(guard), exemptions_(mesh, boundary.acute()), sizes_(mesh.plc(), options.size, sampled_domain(mesh, guard)), max_radius_edge_(options.quality.max_radius_edge_ratio) {
     double largest = 0;
     for (const Vec3& p : mesh.plc().vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     rounding_ = 64 * largest * 0x1p-53;  // heights of a few ulp
@@ -47,13 +55,10 @@ void Refiner::guard_edges() {
         shortest = std::min(shortest, shortest_edge_squared(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3])));
     }
     shortest = std::sqrt(shortest);
-    for (std::size_t c = 0; c < sizes_.size(); ++c) {
-        // A tetrahedron too large has at least the bound for circumradius, or that of the regular one of the bound's volume, R^3 = 27 V / (8 sqrt(3)).
-        // Its point makes edges of (1 - delta) R; on what its centre encroaches, sqrt(1/2) less, twice (Lemma 2.5).
-        const double radius = std::min(std::sqrt(sizes_[c].max_squared_circumradius), std::cbrt(27 / (8 * std::sqrt(3.0)) * sizes_[c].max_volume));
-        if (mesh_.is_filled(CellId{c})) shortest = std::min(shortest, (1 - boundary_.rules.delta) / 2 * radius);
-    }
-    // One bound for all cells: the finest one's edges are on the boundaries of its neighbours, too, and grade from there.
+    // A tetrahedron too large has at least the bound for circumradius, or that of the regular one of the bound's volume. Its point makes edges of
+    // (1 - delta) R; on what its centre encroaches, sqrt(1/2) less, twice (Lemma 2.5).
+    shortest = std::min(shortest, (1 - boundary_.rules.delta) / 2 * kCircumradiusPerEdgeLength * sizes_.smallest());
+    // One bound for all places: the finest one's edges are on the boundaries of its neighbours, too, and grade from there.
     boundary_.reference_edge = shortest;
 }
 
@@ -63,7 +68,7 @@ Refiner::Fault Refiner::classify_strictly(TetId t, double& squared_badness) cons
     const Vec3 &a = mesh_.point(k[0]), &b = mesh_.point(k[1]), &c = mesh_.point(k[2]), &d = mesh_.point(k[3]);
     const Circumsphere sphere = careful_circumsphere(a, b, c, d);
     const double squared_edge = shortest_edge_squared(a, b, c, d);
-    const CellSize& size = sizes_[mesh_.cell(t).index()];
+    const TetSize size = sizes_.of(a, b, c, d, mesh_.cell(t));
     squared_badness = sphere.radius * sphere.radius;
     if (squared_badness > size.max_squared_circumradius || sphere.six_volumes > 6 * size.max_volume) return Fault::size;
     squared_badness /= squared_edge;
@@ -103,7 +108,7 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
         squared_badness = std::numeric_limits<double>::infinity();
         return Fault::flat;
     }
-    const CellSize& size = sizes_[mesh_.cell(t).index()];
+    const TetSize size = sizes_.of(a, b, c, d, mesh_.cell(t));
     if (squared_radius > squared_size_slack_ * size.max_squared_circumradius || six_volume > 6 * size.max_volume) return Fault::size;
     squared_badness = squared_radius / squared_edge;
     if (squared_badness > max_radius_edge_ * max_radius_edge_) return Fault::radius_edge;
@@ -311,11 +316,10 @@ void Refiner::process(TetId t, InsertionReason reason) {
     }
     double radius = 0;
     const Vec3 centre = flush_to_exact_range(circumcentre(a, b, c, d, &radius));
-    const CellSize& size = sizes_[mesh_.cell(t).index()];
     judging_ = sliver_rule_ || sliver_cosine_ < 1;
     if (!sliver_rule_ && judging_ && reason == InsertionReason::size) {
-        // A volume bound v is met by a regular tetrahedron of circumradius 1.25 v^(1/3); refined ones have about as much.
-        const double bound = std::min(std::sqrt(size.max_squared_circumradius), 1.25 * std::cbrt(size.max_volume));
+        const TetSize size = sizes_.of(a, b, c, d, mesh_.cell(t));
+        const double bound = std::min(std::sqrt(size.max_squared_circumradius), kCircumradiusPerRootOfVolume * std::cbrt(size.max_volume));
         judging_ = radius < kJudgeWithin * bound;
     }
     process_centre(t, reason, centre, radius);
@@ -347,7 +351,40 @@ void Refiner::process_centre(TetId t, InsertionReason reason, const Vec3& centre
     }
 }
 
+/// Splits what is larger than its own segment or facet may have it, as large as pieces of tetrahedra within their bound can be: there is none here.
+void Refiner::split_sized_boundary() {
+    if (!sizes_.has_bare_entities()) return;
+    const TetStore& tets = mesh_.tets();
+    const SplitRequest request{InsertionReason::boundary_by_size, VertexId{}};
+    std::size_t before = 0;
+    do {
+        before = mesh_.vertex_count();
+        for (std::size_t i = 0; i < tets.slots(); ++i) {
+            const TetId t{i};
+            if (guard_.poll(before, tets.live(), 0) != RunGuard::Verdict::go_on) return;
+            if (!tets.is_finite(t) || !mesh_.has_labels(t)) continue;
+            const TetLabels labels = mesh_.labels(t);
+            const auto c = tets.corners(t);
+            const std::size_t vertices = mesh_.vertex_count();
+            for (unsigned e = 0; e < 6 && mesh_.vertex_count() == vertices; ++e) {
+                const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
+                if (labels.segments[e].valid() && distance(mesh_.point(a), mesh_.point(b)) > 2 * kCircumradiusPerEdgeLength * sizes_.of_segment(labels.segments[e]))
+                    boundary_.split(Subsegment{a, b, labels.segments[e]}, request);
+            }
+            for (unsigned f = 0; f < 4 && mesh_.vertex_count() == vertices; ++f) {
+                if (!labels.facets[f].valid()) continue;
+                const auto fc = tets.face_corners(TetFace{t, f});
+                double radius = 0;
+                circumcentre(mesh_.point(fc[0]), mesh_.point(fc[1]), mesh_.point(fc[2]), &radius);
+                if (radius > kCircumradiusPerEdgeLength * sizes_.of_facet(labels.facets[f])) boundary_.split(Subface{fc, labels.facets[f]}, request);
+            }
+            if (mesh_.vertex_count() != vertices) boundary_.conform();
+        }
+    } while (mesh_.vertex_count() > before);  // what rounding keeps from being split stays
+}
+
 RunGuard::Verdict Refiner::refine() {
+    split_sized_boundary();
     enqueue_all();
     keeps_nearly_full_ = true;
     const RunGuard::Verdict verdict = drain();

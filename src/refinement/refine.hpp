@@ -14,8 +14,8 @@
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
 #include "refinement/bad_tet_queue.hpp"
-#include "refinement/sizing.hpp"
 #include "refinement/sliver_rule.hpp"
+#include "sizing/size_field.hpp"
 #include "wellmesh/options.hpp"
 
 namespace wellmesh {
@@ -46,9 +46,9 @@ public:
     [[nodiscard]] Fault classify(TetId t, double& squared_badness) const;
     [[nodiscard]] const AcuteExemptions& exemptions() const { return exemptions_; }
     [[nodiscard]] const RefineStatistics& statistics() const { return statistics_; }
-    [[nodiscard]] const std::vector<CellSize>& sizes() const { return sizes_; }
+    [[nodiscard]] const SizeField& sizes() const { return sizes_; }
     /// Sets the guard of Theorem 4.2: no edge below its bound is made for quality. The reference is the shortest edge of the mesh as it is now,
-    /// or, where less, the shortest that the size goals of a cell can ask for.
+    /// or, where less, the shortest that the size goals can ask for.
     void guard_edges();
     [[nodiscard]] std::uint64_t refused() const { return statistics_.guarded + boundary_.refused(); }
     [[nodiscard]] double max_radius_edge() const { return max_radius_edge_; }
@@ -66,6 +66,7 @@ private:
     void process(TetId t, InsertionReason reason);
     void split_flat(TetId t);
     void process_centre(TetId t, InsertionReason reason, const Vec3& centre, double radius);
+    void split_sized_boundary();
     [[nodiscard]] Fault classify_strictly(TetId t, double& squared_badness) const;
     [[nodiscard]] bool strict() const { return boundary_.rules.strict; }
     bool star_is_good(const Cavity& cavity, const Placement& where) const;
@@ -85,7 +86,7 @@ private:
     AcuteExemptions exemptions_;
     std::optional<ConformingMesh> nearly_full_;  // of refine(), in case the vertices that are left are not enough for a cascade
     bool keeps_nearly_full_ = false;
-    std::vector<CellSize> sizes_;
+    SizeField sizes_;
     double max_radius_edge_;
     std::optional<SliverRule> sliver_rule_{};
     std::uint64_t sliver_budget_ = std::numeric_limits<std::uint64_t>::max();

@@ -11,14 +11,14 @@
 
 #include "conforming/conforming_mesh.hpp"
 #include "quality/tet_shape.hpp"
-#include "refinement/sizing.hpp"
+#include "sizing/size_field.hpp"
 
 namespace wellmesh {
 
 /// Badness is the cosine of the smallest dihedral angle, larger is worse; kNoAngleCosine is worst of all.
 class TetJudge {
 public:
-    TetJudge(const ConformingMesh& mesh, const std::vector<CellSize>& sizes, double max_radius_edge)
+    TetJudge(const ConformingMesh& mesh, const SizeField& sizes, double max_radius_edge)
         : mesh_(mesh), sizes_(sizes), squared_radius_edge_(max_radius_edge * max_radius_edge) {}
 
     /// From now on the goal is this cosine, and a circumradius over inradius of at most `max_aspect`: beyond that a tetrahedron is as bad as
@@ -39,8 +39,9 @@ public:
         const double lu = squared_norm(u), lv = squared_norm(v), lw = squared_norm(w);
         const double squared_radius = squared_norm(lu * vw + lv * wu + lw * uv) / (4 * det * det);
         const double squared_edge = std::min({lu, lv, lw, squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
-        const CellSize& size = sizes_[cell.index()];
-        if (!(squared_radius <= squared_radius_edge_ * squared_edge) || squared_radius > kSizeTolerance * kSizeTolerance * size.max_squared_circumradius ||
+        if (!(squared_radius <= squared_radius_edge_ * squared_edge)) return kNoAngleCosine;
+        const TetSize size = sizes_.of(a, b, c, d, cell);
+        if (squared_radius > kSizeTolerance * kSizeTolerance * size.max_squared_circumradius ||
             det > 6 * size.max_volume)
             return kNoAngleCosine;
         return std::max(max_cos_dihedral(a, b, c, d), aspect_badness(squared_radius / (det * det), {cross(d - b, c - b), vw, wu, uv}));
@@ -84,7 +85,7 @@ private:
     }
 
     const ConformingMesh& mesh_;
-    const std::vector<CellSize>& sizes_;
+    const SizeField& sizes_;
     double squared_radius_edge_, goal_ = 1, max_aspect_ = kNoAspect;
 };
 

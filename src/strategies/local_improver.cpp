@@ -42,7 +42,7 @@ bool LocalImprover::in_bounds(const Vec3& a, const Vec3& b, const Vec3& c, const
     const double six_volume = determinant(u, v, w);
     if (!(six_volume > 0)) return false;
     squared_radius = squared_norm(scaled_circumcentre(u, v, w)) / (4 * six_volume * six_volume);
-    const CellSize& size = sizes_[cell.index()];
+    const TetSize size = sizes_.of(a, b, c, d, cell);
     return squared_radius <= squared_radius_edge_ * shortest_edge_squared(a, b, c, d) && squared_radius <= size.max_squared_circumradius &&
            six_volume <= 6 * size.max_volume;
 }

@@ -13,8 +13,8 @@
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
-#include "refinement/sizing.hpp"
 #include "refinement/sliver_rule.hpp"
+#include "sizing/size_field.hpp"
 
 namespace wellmesh {
 
@@ -22,7 +22,7 @@ class LocalImprover {
 public:
     /// @param rule  tells slivers. New tetrahedra of at least b circumradii of the sliver may be worse than it, as the paper allows; with an
     ///              infinite b none may.
-    LocalImprover(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const std::vector<CellSize>& sizes, double max_radius_edge,
+    LocalImprover(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes, double max_radius_edge,
                   const SliverRule& rule)
         : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(sizes), squared_radius_edge_(max_radius_edge * max_radius_edge), rule_(rule) {}
 
@@ -68,7 +68,7 @@ private:
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
-    const std::vector<CellSize>& sizes_;
+    const SizeField& sizes_;
     double squared_radius_edge_;
     SliverRule rule_;
     bool budget_spent_ = false;

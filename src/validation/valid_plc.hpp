@@ -56,6 +56,7 @@ public:
     std::vector<Vec3> vertices;                ///< bit-distinct; only vertices that some cell uses
     std::vector<std::uint32_t> source_vertex;  ///< for each, the first input vertex number (from 0) that it stands for
     std::vector<std::int32_t> vertex_markers;  ///< empty, or one a vertex
+    std::vector<double> vertex_sizes;          ///< empty, or one a vertex; 0: none
     std::vector<VertexId> isolated_vertices;   ///< on no segment and no facet, inside a filled cell
     std::vector<ValidSegment> segments;
     std::vector<ValidFacet> facets;

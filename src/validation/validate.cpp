@@ -277,6 +277,7 @@ void ValidPlcBuilder::compress_vertices() {
         out.vertices.push_back(input.points[v]);
         out.source_vertex.push_back(input.source_vertex[v]);
         if (plc.vertex_markers.size() == plc.vertices.size()) out.vertex_markers.push_back(plc.vertex_markers[input.source_vertex[v]]);
+        if (plc.vertex_sizes.size() == plc.vertices.size()) out.vertex_sizes.push_back(plc.vertex_sizes[input.source_vertex[v]]);
     }
     const auto renumber = [&](VertexId& v) { v = number[v.index()]; };  // keeps the order, so sorted lists stay sorted
     for (ValidFacet& f : out.facets) {

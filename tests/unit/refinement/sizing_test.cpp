@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "refinement/sizing.hpp"
+#include "sizing/size_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -91,13 +91,18 @@ TEST(Sizing, TheTightestBoundCounts) {
     SizeGoals goals;
     goals.max_volume = 0.75;
     goals.edge_length = 2;
-    const std::vector<CellSize> sizes = cell_sizes(valid, goals);
-    ASSERT_EQ(sizes.size(), valid.cells.size());
-    for (std::size_t c = 1; c < sizes.size(); ++c) {
-        EXPECT_EQ(sizes[c].max_volume, valid.cells[c].region == 2 ? 0.5 : 0.75);
-        EXPECT_DOUBLE_EQ(sizes[c].max_squared_circumradius, 4 * kCircumradiusPerEdgeLength * kCircumradiusPerEdgeLength);
+    goals.gradation = 0;
+    const SizeField sizes(valid, goals);
+    EXPECT_FALSE(sizes.varies());
+    for (std::size_t c = 1; c < valid.cells.size(); ++c) {
+        EXPECT_EQ(sizes.of_cell(CellId{c}).max_volume, valid.cells[c].region == 2 ? 0.5 : 0.75);
+        EXPECT_DOUBLE_EQ(sizes.of_cell(CellId{c}).max_squared_circumradius, 4 * kCircumradiusPerEdgeLength * kCircumradiusPerEdgeLength);
     }
-    for (const CellSize& s : cell_sizes(validate(cube()), {})) EXPECT_TRUE(std::isinf(s.max_volume) && std::isinf(s.max_squared_circumradius));
+    const ValidPlc plain = validate(cube());
+    const SizeField nothing(plain, {});
+    EXPECT_FALSE(nothing.asks());
+    for (std::size_t c = 0; c < plain.cells.size(); ++c)
+        EXPECT_TRUE(std::isinf(nothing.of_cell(CellId{c}).max_volume) && std::isinf(nothing.of_cell(CellId{c}).max_squared_circumradius));
 }
 
 }  // namespace

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// TetGen's mesh sizes at points (.mtr): "points 1" and one size a line, in the order of the .node file. 0: none.
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/readers.hpp"
+#include "io/tetgen_nodes.hpp"
+
+namespace wellmesh::io {
+
+std::vector<double> read_mtr(const SourceFile& source, std::size_t points) {
+    TextScanner in(source, kTetgenSyntax);
+    constexpr std::size_t kLeastSizeBytes = 2;  // "1\n"
+    const std::size_t count = in.count("the number of points", kLeastSizeBytes);
+    if (count != points) in.fail(fmt::format("{} sizes, but there are {} points", count, points));
+    std::int64_t width = 1;
+    if (!in.at_end_of_line()) width = in.to_integer(in.next_on_line(), "the number of values a point (1)");
+    if (width != 1) in.fail(fmt::format("{} values a point are not supported, only one: the edge length", width));
+    if (!in.at_end_of_line()) in.fail_expected(in.next_on_line(), "the end of the line after the counts");
+    std::vector<double> sizes;
+    sizes.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        sizes.push_back(in.real("a size"));
+        if (!(sizes.back() >= 0)) in.fail(fmt::format("a size is a number above 0, or 0 for none, not {}", sizes.back()));
+        in.skip_line();
+    }
+    if (!in.at_end()) in.fail_expected(in.next(), fmt::format("nothing after the {} sizes", count).c_str());
+    return sizes;
+}
+
+BackgroundMesh read_tetgen_background(const std::filesystem::path& path) {
+    BackgroundMesh background{read_tetgen_mesh(path), {}};
+    std::filesystem::path sizes = path;
+    sizes.replace_extension(".mtr");
+    background.sizes = read_mtr(read_source(sizes), background.mesh.vertices.size());
+    return background;
+}
+
+}  // namespace wellmesh::io
