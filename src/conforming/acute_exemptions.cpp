@@ -115,6 +115,7 @@ std::optional<ForcedBy> AcuteExemptions::feature_at(TetId t) const {
     for (const auto& e : kEdgeCorners)
         if (on_boundary(c[e[0]]) && on_boundary(c[e[1]])) offer(meeting_of(c[e[0]], c[e[1]]));
     if (best) return best->feature;
+    if (std::count_if(c.begin(), c.end(), [&](VertexId v) { return on_boundary(v); }) < 2) return std::nullopt;
     for (const VertexId v : c) {
         const VertexId ball = mesh_.info(v).ball;
         if (ball.valid()) return ForcedBy{EntityKind::vertex, ball.value(), vertex_deg_[ball.index()]};

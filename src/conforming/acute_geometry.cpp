@@ -18,8 +18,7 @@ constexpr std::uint8_t kMostGenerations = 2;
 
 }  // namespace
 
-AcuteGeometry::AcuteGeometry(const ValidPlc& plc, std::vector<double> largest_ball)
-    : plc_(&plc), any_(!plc.acute_features.empty()), largest_ball_(std::move(largest_ball)) {
+AcuteGeometry::AcuteGeometry(const ValidPlc& plc) : plc_(&plc), any_(!plc.acute_features.empty()) {
     if (!any_) return;
     acute_.assign(plc.vertices.size(), 0);
     for (const AcuteFeature& f : plc.acute_features) {
@@ -110,7 +109,6 @@ double AcuteGeometry::ball_radius(VertexId v) {
     double& r = ball_[v.index()];
     if (r < 0) {
         r = (*feature_size_)(point(v)) / 3;
-        if (!largest_ball_.empty()) r = std::min(r, largest_ball_[v.index()]);
         if (!std::isfinite(r)) r = 0;
     }
     return r;

@@ -27,8 +27,7 @@ struct CarriedWitness {
 
 class AcuteGeometry {
 public:
-    /// @param largest_ball  bound on the radius of the ball about each vertex, input units (sizes ask for it); empty: none.
-    explicit AcuteGeometry(const ValidPlc& plc, std::vector<double> largest_ball = {});
+    explicit AcuteGeometry(const ValidPlc& plc);
 
     /// Is there any acute angle at all? If not, nothing below is ever needed.
     [[nodiscard]] bool any() const { return any_; }
@@ -36,6 +35,9 @@ public:
     /// Radius of the ball about an input vertex that stays empty: a third of the local feature size if the vertex is acute or ends an acute
     /// segment, else 0. Found when first asked for.
     [[nodiscard]] double ball_radius(VertexId v);
+
+    /// Half of it, where a size is asked for that is finer than the ball.
+    void halve_ball(VertexId v) { ball_[v.index()] /= 2; }
 
     /// Is a point of the segment in the ball of one of its ends?
     [[nodiscard]] bool in_ball_of_segment(SegmentId s, const Vec3& p);
@@ -85,7 +87,7 @@ private:
     const ValidPlc* plc_;
     bool any_ = false;
     std::vector<char> acute_;  // input vertices
-    std::vector<double> largest_ball_, ball_;
+    std::vector<double> ball_;  // radii; below 0: not found yet
     std::optional<LocalFeatureSize> feature_size_;
     std::vector<std::uint32_t> facet_rows_, segment_rows_;  // compressed rows: what meets at each input vertex
     std::vector<FacetId> facets_, ids_;                     // ids_[i] = FacetId{i}: spans over single facets

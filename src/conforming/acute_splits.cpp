@@ -58,10 +58,24 @@ VertexId BoundaryRefiner::ball_around(const Cavity& cavity) {
     return {};
 }
 
+bool BoundaryRefiner::makes_room(const Cavity& cavity, InsertionReason reason) {
+    const bool for_size = reason == InsertionReason::size || reason == InsertionReason::boundary_by_size || reason == InsertionReason::lattice;
+    for (VertexId v = ball_around(cavity); v.valid(); v = ball_around(cavity)) {
+        if (!for_size) return false;
+        acute_.halve_ball(v);
+    }
+    return true;
+}
+
 /// The corner that is an acute vertex on whose ball's sphere the other two lie.
-VertexId BoundaryRefiner::fan_apex(const std::array<VertexId, 3>& corners) const {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (mesh_.info(corners[(k + 1) % 3]).ball == corners[k] && mesh_.info(corners[(k + 2) % 3]).ball == corners[k]) return corners[k];
+VertexId BoundaryRefiner::fan_apex(const std::array<VertexId, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const VertexId v = corners[k];
+        const auto on_sphere = [&](VertexId w) {  // as the sphere is now
+            return mesh_.info(w).ball == v && distance(mesh_.point(v), mesh_.point(w)) <= (1 + 1e-6) * acute_.ball_radius(v);
+        };
+        if (on_sphere(corners[(k + 1) % 3]) && on_sphere(corners[(k + 2) % 3])) return v;
+    }
     return {};
 }
 
@@ -78,7 +92,10 @@ std::optional<BoundaryRefiner::AcutePlace> BoundaryRefiner::place_on_segment(con
     const auto& ends = mesh_.plc().segments[s.segment.index()].ends;
     if (!request.for_conformity())
         for (const VertexId end : ends)
-            if ((s.a == end || s.b == end) && length <= acute_.ball_radius(end) * (1 + 1e-9)) return std::nullopt;
+            while ((s.a == end || s.b == end) && length <= acute_.ball_radius(end) * (1 + 1e-9)) {
+                if (request.reason != InsertionReason::boundary_by_size) return std::nullopt;
+                acute_.halve_ball(end);
+            }
 
     std::optional<CarriedWitness> q = request.witness;
     if (!q && request.for_conformity()) q = nearest_witness(middle, length / 2, mesh_.triangulation().tet_of(s.a), request.parent);

@@ -239,7 +239,10 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
     Triangulation& tri = mesh_.triangulation();
     if (acute_.any()) {
         if (request.for_conformity()) return split_acute(s.facet, s.corners, true, face.tet(), request);
-        if (fan_apex(s.corners).valid()) return SplitOutcome::refused;
+        for (VertexId v = fan_apex(s.corners); v.valid(); v = fan_apex(s.corners)) {
+            if (request.reason != InsertionReason::boundary_by_size) return SplitOutcome::refused;
+            acute_.halve_ball(v);
+        }
     }
     const auto found = [&](unsigned k) {
         const Vec3 unit = picking_point(2, key, k == 0 ? 1 : k);
@@ -280,7 +283,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
         const Vec3 p = project_to_facet(facet, a + (1.0 / 3) * ((b - a) + (c - a)));
         if (!tri.find_conflict_cavity(p, face.tet(), cavity_)) return SplitOutcome::gone;
     }
-    if (refuses(request, radius) || ball_around(cavity_).valid()) return SplitOutcome::refused;
+    if (refuses(request, radius) || !makes_room(cavity_, request.reason)) return SplitOutcome::refused;
     const VertexId v = mesh_.insert(cavity_, where, {.reason = request.reason, .parent = request.parent});
     inserted(v);
     record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, sliver_free, centre, radius, s.corners[0], s.corners[1], s.corners[2]);

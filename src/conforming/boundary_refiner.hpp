@@ -93,6 +93,8 @@ public:
 
     /// The acute input vertex in whose ball the cavity's point lies, invalid if in none: its Delaunay neighbour, since balls are empty.
     [[nodiscard]] VertexId ball_around(const Cavity& cavity);
+    /// May the cavity's point be inserted for this reason? Not in a ball, unless its size is asked for: then the ball shrinks.
+    [[nodiscard]] bool makes_room(const Cavity& cavity, InsertionReason reason);
     [[nodiscard]] AcuteGeometry& acute() { return acute_; }
 
     [[nodiscard]] std::uint64_t seed() const { return seed_; }
@@ -137,7 +139,7 @@ private:
     [[nodiscard]] std::optional<CarriedWitness> nearest_witness(const Vec3& centre, double radius, TetId near, VertexId fallback);
     [[nodiscard]] std::optional<AcutePlace> place_on_segment(const Subsegment& s, const SplitRequest& request);
     [[nodiscard]] AcutePlace place_on_facet(FacetId f, const std::array<VertexId, 3>& corners, TetId near, const SplitRequest& request);
-    [[nodiscard]] VertexId fan_apex(const std::array<VertexId, 3>& corners) const;
+    [[nodiscard]] VertexId fan_apex(const std::array<VertexId, 3>& corners);
     [[nodiscard]] Vec3 cut_arc(FacetId f, const std::array<VertexId, 3>& corners, VertexId apex, const std::optional<CarriedWitness>& q);
     [[nodiscard]] Vec3 at_distance(SegmentId s, VertexId end, double d) const;
     [[nodiscard]] Subsegment touched_outline(FacetId f, const Vec3& inside) const;

@@ -300,9 +300,9 @@ LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near) {
     if (!tri.find_conflict_cavity(p, near, cavity_)) return Outcome::refused;
     const Placement where = Placement::in_cell(cell);
     if (!is_clear(p, kClearance * radius)) return Outcome::refused;
-    if (boundary_.ball_around(cavity_).valid()) return Outcome::refused;
     boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
     if (!encroached_segments_.empty() || !encroached_faces_.empty()) return Outcome::encroaches;
+    if (!boundary_.makes_room(cavity_, InsertionReason::lattice)) return Outcome::refused;
     const VertexId v = mesh_.insert(cavity_, where, {.reason = InsertionReason::lattice});
     near = tri.tet_of(v);
     return Outcome::inserted;

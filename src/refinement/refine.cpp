@@ -240,7 +240,7 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
             if (!tri.find_conflict_cavity(centre, t, cavity_)) return false;
         }
     }
-    if (boundary_.ball_around(cavity_).valid()) return false;
+    if (!boundary_.makes_room(cavity_, reason)) return false;
     if (reason != InsertionReason::size) {
         const double allowed = boundary_.shortest_allowed(boundary_.reference_edge);
         // The sphere is empty, so the first comparison settles nearly all.

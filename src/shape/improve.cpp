@@ -49,7 +49,7 @@ std::size_t ShapeImprover::count_bad(double angle_deg) const {
 double ShapeImprover::worst_cosine() const {
     double worst = -1;
     for (std::size_t i = 0; i < mesh_.tets().slots(); ++i)
-        if (judge_.counts(TetId{i})) worst = std::max(worst, judge_.cosine(TetId{i}));
+        if (judge_.counts(TetId{i}) && judge_.cosine(TetId{i}) > worst && !is_left_alone(TetId{i})) worst = judge_.cosine(TetId{i});
     return worst;
 }
 
@@ -65,7 +65,7 @@ void ShapeImprover::collect_bad() {
         const TetId t{i};
         if (!judge_.counts(t)) continue;
         const double cosine = judge_.shape_badness(t);
-        if (cosine > goal_cosine_) left_.push_back({cosine, mesh_.tets().corners(t)});
+        if (cosine > goal_cosine_ && !is_left_alone(t)) left_.push_back({cosine, mesh_.tets().corners(t)});
     }
 }
 
@@ -80,8 +80,19 @@ void ShapeImprover::touch(const std::vector<TetId>& tets) {
         for (const VertexId v : mesh_.tets().corners(t))
             if (v != kInfiniteVertex) touched_[v.index()] = clock_;
         if (!judge_.counts(t)) continue;
-        if (const double cosine = judge_.shape_badness(t); cosine > goal_cosine_) push(t, cosine);
+        if (const double cosine = judge_.shape_badness(t); cosine > goal_cosine_ && !is_left_alone(t)) push(t, cosine);
     }
+}
+
+/// What an acute angle of the input forces is given one chance to move: more would be spent in vain.
+bool ShapeImprover::is_left_alone(TetId t) const { return leaves_forced_ && refiner_.exemptions().feature_at(t).has_value(); }
+
+void ShapeImprover::leave_forced_alone() {
+    leaves_forced_ = true;
+    std::erase_if(left_, [&](const Bad& b) {
+        const TetId t = find_tet(mesh_, b.corners);
+        return !t.valid() || is_left_alone(t);
+    });
 }
 
 /// @return is the tetrahedron gone, or not to be tried now? If not, it is left over.
@@ -206,6 +217,7 @@ RunGuard::Verdict ShapeImprover::smooth_around_bad(unsigned rings) {
 /// All that moves can do, then what single removals and insertions can.
 RunGuard::Verdict ShapeImprover::settle(LastResort last_resort) {
     RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
+    leave_forced_alone();
     if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::none);
     for (unsigned r = 0; r < kSmoothingRounds && !left_.empty() && verdict == RunGuard::Verdict::go_on; ++r) {
         const std::size_t before = left_.size();

@@ -79,6 +79,8 @@ private:
     RunGuard::Verdict climb(double rung_cosine, std::size_t vertices_at_start, bool& reached);
     RunGuard::Verdict split_worse_than(double cosine);
     void collect_bad();
+    [[nodiscard]] bool is_left_alone(TetId t) const;
+    void leave_forced_alone();
     void touch(const std::vector<TetId>& tets);
     void push(TetId t, double badness);
     [[nodiscard]] double worst_cosine() const;
@@ -92,6 +94,7 @@ private:
     Thinning thinning_;
 
     double goal_cosine_ = 1;
+    bool leaves_forced_ = false;
     std::uint64_t clock_ = 0, pass_ = 0, splits_ = 0;
     std::vector<std::uint64_t> touched_;             // per vertex: when its star changed last
     std::vector<std::uint64_t> marked_;              // per vertex: stamp of the last collection that it belongs to
