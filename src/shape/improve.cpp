@@ -84,7 +84,7 @@ void ShapeImprover::touch(const std::vector<TetId>& tets) {
     }
 }
 
-/// What an acute angle of the input forces is given one chance to move: more would be spent in vain.
+/// What an acute angle of the input forces is given its chance to move, but no splits: they would not end.
 bool ShapeImprover::is_left_alone(TetId t) const { return leaves_forced_ && refiner_.exemptions().feature_at(t).has_value(); }
 
 void ShapeImprover::leave_forced_alone() {
@@ -217,7 +217,6 @@ RunGuard::Verdict ShapeImprover::smooth_around_bad(unsigned rings) {
 /// All that moves can do, then what single removals and insertions can.
 RunGuard::Verdict ShapeImprover::settle(LastResort last_resort) {
     RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
-    leave_forced_alone();
     if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::none);
     for (unsigned r = 0; r < kSmoothingRounds && !left_.empty() && verdict == RunGuard::Verdict::go_on; ++r) {
         const std::size_t before = left_.size();
@@ -299,7 +298,9 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     stuck_.clear();
     tried_.assign(tried_.size(), {});
     collect_bad();
+    leaves_forced_ = false;
     RunGuard::Verdict verdict = settle(LastResort::remove_or_insert);
+    leave_forced_alone();
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left_.empty(); rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices_at_start, reached);
