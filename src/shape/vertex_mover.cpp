@@ -2,6 +2,7 @@
 #include "shape/vertex_mover.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "conforming/place_point.hpp"
@@ -15,6 +16,8 @@ namespace {
 constexpr double kReach = 0.3;       // of the mean incident edge: how far a vertex may be sampled; other candidates may go 1.5 times as far
 constexpr double kNearReach = 0.4;   // of that: every other sample stays this near
 constexpr double kGain = 0.1;        // of the way to the goal, in cosine: less is no progress
+constexpr double kFlatCosine = 0.99996;  // of half a degree: where the input is acute anything better than flat is progress,
+constexpr std::array kFineSteps{0.1, -0.1, 0.03, -0.03, 0.01, -0.01, 0.003, -0.003};  // and small steps, in reaches, are all that fit between copies
 constexpr std::size_t kTrials = 3;   // how many of the best candidates are tried in earnest where the boundary may still refuse them
 
 }  // namespace
@@ -70,6 +73,9 @@ bool VertexMover::look_at_star(VertexId v) {
     return true;
 }
 
+/// Copies of vertices make flat tetrahedra of four points on one circle; any step off the circle does away with them.
+bool VertexMover::is_flat_at_acute() const { return star_cosine_ > kFlatCosine && boundary_.acute().any(); }
+
 void VertexMover::offer(const Vec3& offset, double reach) {
     const double far = norm(offset);
     if (!(far > 0) || !std::isfinite(far)) return;
@@ -108,10 +114,13 @@ void VertexMover::propose(TetId worst, unsigned samples) {
         for (unsigned k = 1; k <= samples; ++k) {
             const Vec3 u = scale(k) * points.next();
             offer(u.x * facet.axis_u + u.y * facet.axis_v, reach);
+            if (is_flat_at_acute() && k <= kFineSteps.size()) offer(std::abs(kFineSteps[k - 1]) * (u.x * facet.axis_u + u.y * facet.axis_v), reach);
         }
     } else {
         const Vec3 d = mesh_.point(where_.b) - mesh_.point(where_.a);
         for (unsigned k = 1; k <= samples / 2; ++k) offer((reach * points.next().x / norm(d)) * d, reach);
+        if (is_flat_at_acute())
+            for (const double step : kFineSteps) offer((step * reach / norm(d)) * d, reach);
     }
 }
 
@@ -202,7 +211,8 @@ bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
     if (!look_at_star(v)) return false;
     propose(worst, samples);
     if (!take_out()) return false;
-    const double limit = star_cosine_ - std::max(kWorthwhile, kGain * (star_cosine_ - goal));
+    double limit = star_cosine_ - std::max(kWorthwhile, kGain * (star_cosine_ - goal));
+    if (is_flat_at_acute()) limit = kFlatCosine;
     double best = limit;
     ranked_.clear();
     for (const Vec3& p : proposals_) {

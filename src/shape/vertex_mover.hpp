@@ -64,6 +64,7 @@ private:
     bool put(const Vec3& p, double limit);
     void propose(TetId worst, unsigned samples);
     void propose_gradients(TetId worst, double reach);
+    [[nodiscard]] bool is_flat_at_acute() const;
     void offer(const Vec3& offset, double reach);
     [[nodiscard]] bool find_placement();
     [[nodiscard]] Vec3 on_carrier(const Vec3& p) const;
