@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <tuple>
 
 #include "conforming/place_point.hpp"
+#include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 
 namespace wellmesh {
@@ -15,16 +17,19 @@ namespace {
 /// Copies of copies between facets that share a vertex only need not close (two such rotations have no common axis): after so many, splits
 /// go to other places.
 constexpr std::uint8_t kMostGenerations = 2;
+/// Part of the room that copies have (stretch()).
+constexpr double kStretch = 0.2;
 
 }  // namespace
 
 AcuteGeometry::AcuteGeometry(const ValidPlc& plc) : plc_(&plc), any_(!plc.acute_features.empty()) {
     if (!any_) return;
-    acute_.assign(plc.vertices.size(), 0);
+    acute_deg_.assign(plc.vertices.size(), 180);
+    const auto note = [&](std::uint32_t v, double angle) { acute_deg_[v] = std::min(acute_deg_[v], angle); };
     for (const AcuteFeature& f : plc.acute_features) {
-        if (f.kind == EntityKind::vertex) acute_[f.id] = 1;
+        if (f.kind == EntityKind::vertex) note(f.id, f.angle_deg);
         else
-            for (const VertexId v : plc.segments[f.id].ends) acute_[v.index()] = 1;
+            for (const VertexId v : plc.segments[f.id].ends) note(v.value(), f.angle_deg);
     }
     ball_.assign(plc.vertices.size(), -1);
     feature_size_.emplace(plc);
@@ -105,7 +110,7 @@ bool AcuteGeometry::is_on_facet(VertexId input_vertex, FacetId f) const {
 }
 
 double AcuteGeometry::ball_radius(VertexId v) {
-    if (!any_ || v.index() >= acute_.size() || !acute_[v.index()]) return 0;
+    if (!any_ || v.index() >= acute_deg_.size() || acute_deg_[v.index()] == 180) return 0;
     double& r = ball_[v.index()];
     if (r < 0) {
         r = (*feature_size_)(point(v)) / 3;
@@ -123,22 +128,33 @@ bool AcuteGeometry::in_ball_of_segment(SegmentId s, const Vec3& p) {
     });
 }
 
+/// Copies at exactly the same distance lie on one circle with what they are copies of, four at a time, and leave flat tetrahedra. So each
+/// segment at v has its own scale. A copy at d (1 + e) still encroaches nothing at d on a segment at the angle a as long as e < 1 - cos a.
+double AcuteGeometry::stretch(VertexId v, SegmentId s) const {
+    const double angle = acute_deg_[v.index()];
+    if (angle == 180) return 1;
+    const double half = std::sin(angle * (std::numbers::pi / 360));
+    return 1 + kStretch * 2 * half * half * (2 * unit_double(mix64(v.value(), s.value())) - 1);
+}
+
 std::optional<AcuteGeometry::SegmentCopy> AcuteGeometry::copy_on_segment(SegmentId s, const CarriedWitness& q) const {
     std::optional<SegmentCopy> best;
     double least = std::numeric_limits<double>::infinity();
     for (const VertexId end : plc_->segments[s.index()].ends) {
         if (q.carrier == CarrierKind::input_vertex && q.carrier_id == end.value()) continue;
         const auto segments = segments_of(q.carrier, q.carrier_id);
-        bool related = std::any_of(segments.begin(), segments.end(), [&](SegmentId o) {
+        const auto same_end = std::find_if(segments.begin(), segments.end(), [&](SegmentId o) {
             const auto& ends = plc_->segments[o.index()].ends;
             return o != s && (ends[0] == end || ends[1] == end);
         });
+        bool related = same_end != segments.end();
+        const double scale = related && q.carrier == CarrierKind::segment ? stretch(end, s) / stretch(end, *same_end) : 1;
         const auto facets = facets_of(q.carrier, q.carrier_id);
         const auto& own = plc_->segments[s.index()].facets;
         related = related || std::any_of(facets.begin(), facets.end(), [&](FacetId f) { return !std::binary_search(own.begin(), own.end(), f) && is_on_facet(end, f); });
         if (!related) continue;
         const Vec3 &v = point(end), &other = point(plc_->segments[s.index()].ends[plc_->segments[s.index()].ends[0] == end ? 1 : 0]);
-        const double d = distance(q.point, v);
+        const double d = scale * distance(q.point, v);
         const double moved = squared_distance(q.point, v + (d / distance(v, other)) * (other - v));
         if (moved >= least) continue;
         least = moved;

@@ -82,11 +82,12 @@ private:
     void list_shared_segments();
     [[nodiscard]] std::optional<Vec3> rotated_about(SegmentId s, FacetId f, const Vec3& q, const Vec3& centre) const;
     [[nodiscard]] std::optional<Vec3> swung_about(VertexId v, FacetId f, const Vec3& q) const;
+    [[nodiscard]] double stretch(VertexId v, SegmentId s) const;
     [[nodiscard]] const Vec3& point(VertexId v) const { return plc_->vertices[v.index()]; }
 
     const ValidPlc* plc_;
     bool any_ = false;
-    std::vector<char> acute_;  // input vertices
+    std::vector<double> acute_deg_;  // smallest acute angle at each input vertex; 180: none
     std::vector<double> ball_;  // radii; below 0: not found yet
     std::optional<LocalFeatureSize> feature_size_;
     std::vector<std::uint32_t> facet_rows_, segment_rows_;  // compressed rows: what meets at each input vertex
