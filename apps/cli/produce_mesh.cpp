@@ -96,7 +96,7 @@ int run(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& r
         if (line.enabled()) control.on_progress = [&line](const Progress& progress) { line.show(progress); };
         return make(control);
     }();
-    if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, "interrupted in stage write; nothing written");
+    if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, "interrupted; nothing written");
     stages.insert(stages.end(), result.statistics.stages.begin(), result.statistics.stages.end());
 
     const Stopwatch writing;
