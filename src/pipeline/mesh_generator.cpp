@@ -72,7 +72,7 @@ public:
         try {
             return run();
         } catch (const std::bad_alloc&) {
-            throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("memory ran out in stage {}; a memory limit would have ended the run in time", to_string(guard_.stage())));
+            throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("out of memory in stage {}; a memory limit would have ended the run in time", to_string(guard_.stage())));
         }
     }
 
