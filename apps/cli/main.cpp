@@ -66,7 +66,7 @@ int run_guarded(const Command& command) {
         print_error(error);
         return exit_status(error.code());
     } catch (const std::bad_alloc&) {
-        std::fputs("wellmesh: budget_exhausted: memory ran out; nothing written\n", stderr);
+        std::fputs("wellmesh: budget_exhausted: out of memory; nothing written\n", stderr);
         return kGaveUp;
     } catch (const std::exception& error) {
         fmt::print(stderr, "wellmesh: internal error: {}; please report it with the input\n", error.what());

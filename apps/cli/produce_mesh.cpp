@@ -96,7 +96,7 @@ int run(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& r
         if (line.enabled()) control.on_progress = [&line](const Progress& progress) { line.show(progress); };
         return make(control);
     }();
-    if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, "interrupted in stage write; nothing written");
+    if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, "interrupted; nothing written");
     stages.insert(stages.end(), result.statistics.stages.begin(), result.statistics.stages.end());
 
     const Stopwatch writing;
@@ -167,7 +167,7 @@ int produce_mesh(const MeshJob& job, Interrupt& interrupt, const std::function<v
         report_error(error);
         throw;
     } catch (const std::bad_alloc&) {  // generate() tells its own: this is outside of it
-        const MeshError error(ErrorCode::budget_exhausted, Stage::read, "memory ran out while files were read or written");
+        const MeshError error(ErrorCode::budget_exhausted, Stage::read, "out of memory while files were read or written");
         report_error(error);
         throw error;
     }

@@ -88,24 +88,31 @@ void BallSearch::build(std::size_t begin, std::size_t end, std::size_t node) {
 
 // The coefficients are computed in long double. Every difference has a relative error of one rounding; A and each component of N are
 // sums of at most 12 products of at most 6 rounded factors, so 64 roundings of the sum of absolute products (a_scale, n_scale bound
-// it) are more than enough. Rounding them to double, subtracting p - a, and evaluating f cost at most 8 roundings of double relative
+// it) are more than enough. Rounding them to Real, subtracting p - a, and evaluating f cost at most 8 roundings of Real relative
 // to A |q|^2 and to |N_k q_k|, which are folded into a_low and n_error.
-Ball BallSearch::finish(const WeightedPoint& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const {
+template <class Real>
+BallForm<Real> BallSearch::form(Long a, const std::array<Long, 3>& n, Long a_error, Long n_error, Long largest_difference) const {
+    constexpr auto kRounding = static_cast<Long>(std::numeric_limits<Real>::epsilon());
+    BallForm<Real> form;
+    form.a_low = static_cast<Real>(std::max(Long{0}, (a - a_error) * (1 - 16 * kRounding)));
+    for (std::size_t k = 0; k < 3; ++k) {
+        form.n[k] = static_cast<Real>(n[k]);
+        form.n_error[k] = static_cast<Real>(n_error + 16 * kRounding * std::abs(n[k]));
+    }
+    form.allowance = static_cast<Real>((a + a_error) * (1 + 16 * kRounding) * largest_difference);
+    return form;
+}
+
+Ball BallSearch::finish(const WeightedPoint& base, Long a, const std::array<Long, 3>& n, Long a_scale, Long n_scale) const {
     Ball ball;
     ball.base = scale_ * base.point;
     ball.base_weight = scale_ * base.weight * scale_;
-    ball.a = static_cast<double>(a);
-    const Long a_error = 64 * kLongUnit * a_scale;
-    ball.a_low = static_cast<double>(std::max(Long{0}, (a - a_error) * (1 - 16 * static_cast<Long>(kUnit))));
-    for (std::size_t k = 0; k < 3; ++k) {
-        ball.n[k] = static_cast<double>(n[k]);
-        ball.n_error[k] = static_cast<double>(64 * kLongUnit * n_scale) + 16 * kUnit * std::abs(ball.n[k]);
-    }
+    ball.a = a;
     ball.radius_squared = static_cast<double>(dot(n, n) / (4 * a * a));
-    if (weights_ != nullptr) {
-        const Long largest_difference = std::max(Long{0}, static_cast<Long>(largest_weight_) - static_cast<Long>(ball.base_weight));
-        ball.allowance = static_cast<double>((a + a_error) * (1 + 16 * static_cast<Long>(kUnit)) * largest_difference);
-    }
+    const Long a_error = 64 * kLongUnit * a_scale, n_error = 64 * kLongUnit * n_scale;
+    const Long largest_difference = weights_ == nullptr ? 0 : std::max(Long{0}, static_cast<Long>(largest_weight_) - static_cast<Long>(ball.base_weight));
+    ball.rough = form<double>(a, n, a_error, n_error, largest_difference);
+    ball.close = form<Long>(a, n, a_error, n_error, largest_difference);
     return ball;
 }
 
@@ -128,35 +135,52 @@ Ball BallSearch::diametral_ball(const WeightedPoint& a, const WeightedPoint& b) 
     return finish(a, 1, (e.lift / e.squared) * e.along, 1, (e.terms / e.squared) * norm(e.along));
 }
 
-bool BallSearch::excludes(const Ball& ball, const Box& box) {
-    const std::array<double, 3> base{ball.base.x, ball.base.y, ball.base.z};
-    double lowest = 0, slack = 0;
+namespace {
+
+enum class Verdict : std::uint8_t { outside, meets, unsure };
+
+/// Whether the ball meets the box. `low` and `high` are its corners' differences from the base.
+template <class Real>
+Verdict where(const BallForm<Real>& form, const std::array<Real, 3>& low, const std::array<Real, 3>& high) {
+    constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
+    Real lowest = 0, slack = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         // Rounding of the interval's ends: relative to their size, covered by the roundings in a_low and n_error.
-        const double low = box.low[k] - base[k], high = box.high[k] - base[k];
-        const auto parabola = [&](double x) { return (ball.a_low * x - ball.n[k]) * x; };
-        double least = std::min(parabola(low), parabola(high));
-        const double bottom = ball.a_low > 0 ? ball.n[k] / (2 * ball.a_low) : 0;
-        if (ball.a_low > 0 && low < bottom && bottom < high) least = -ball.n[k] * bottom / 2;
+        const auto parabola = [&](Real x) { return (form.a_low * x - form.n[k]) * x; };
+        Real least = std::min(parabola(low[k]), parabola(high[k]));
+        const Real bottom = form.a_low > 0 ? form.n[k] / (2 * form.a_low) : 0;
+        if (form.a_low > 0 && low[k] < bottom && bottom < high[k]) least = -form.n[k] * bottom / 2;
         lowest += least;
         // The bottom's own rounding and that of the sum: relative to the terms, of which n x is the larger where f is near 0.
-        slack += (ball.n_error[k] + 16 * kUnit * std::abs(ball.n[k])) * std::max(std::abs(low), std::abs(high));
+        slack += (form.n_error[k] + 16 * kRounding * std::abs(form.n[k])) * std::max(std::abs(low[k]), std::abs(high[k]));
     }
-    return lowest - ball.allowance > slack;
+    lowest -= form.allowance;
+    return lowest > slack ? Verdict::outside : lowest < -slack ? Verdict::meets : Verdict::unsure;
 }
 
-bool BallSearch::excludes(const Ball& ball, const Vec3& point) {
-    const Vec3 q = point - ball.base;
-    const double f = ball.a_low * squared_norm(q) - (ball.n[0] * q.x + ball.n[1] * q.y + ball.n[2] * q.z);
-    const double slack = 2 * (ball.n_error[0] * std::abs(q.x) + ball.n_error[1] * std::abs(q.y) + ball.n_error[2] * std::abs(q.z));
-    return f - ball.allowance > slack;
+}  // namespace
+
+bool BallSearch::excludes(const Ball& ball, const Box& box) {
+    const std::array<double, 3> base{ball.base.x, ball.base.y, ball.base.z};
+    std::array<double, 3> low{}, high{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = box.low[k] - base[k];
+        high[k] = box.high[k] - base[k];
+    }
+    if (const Verdict rough = where(ball.rough, low, high); rough != Verdict::unsure) return rough == Verdict::outside;
+    std::array<Long, 3> close_low{}, close_high{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        close_low[k] = static_cast<Long>(box.low[k]) - static_cast<Long>(base[k]);
+        close_high[k] = static_cast<Long>(box.high[k]) - static_cast<Long>(base[k]);
+    }
+    return where(ball.close, close_low, close_high) == Verdict::outside;
 }
 
 double BallSearch::depth(const Ball& ball, std::uint32_t vertex) const {
     const LongVec q = difference((*originals_)[vertex], (1 / scale_) * ball.base, scale_);
-    const Long a = static_cast<Long>(ball.a), base_weight = static_cast<Long>(ball.base_weight);
+    const Long a = ball.a, base_weight = static_cast<Long>(ball.base_weight);
     const Long weight = weights_ == nullptr ? 0 : static_cast<Long>(scale_) * static_cast<Long>((*weights_)[vertex]) * static_cast<Long>(scale_);
-    const Long f = a * dot(q, q) - (static_cast<Long>(ball.n[0]) * q[0] + static_cast<Long>(ball.n[1]) * q[1] + static_cast<Long>(ball.n[2]) * q[2]);
+    const Long f = a * dot(q, q) - dot(ball.close.n, q);
     return static_cast<double>((a * (weight - base_weight) - f) / (a * (static_cast<Long>(ball.radius_squared) + std::abs(base_weight) + std::abs(weight))));
 }
 

@@ -23,16 +23,24 @@
 
 namespace wellmesh::certifying {
 
-/// f as above in the search's scaled coordinates, with bounds on the errors of its coefficients. Made by BallSearch only.
+/// f as above in the search's scaled coordinates, with bounds on the errors of its coefficients, in one precision.
+template <class Real>
+struct BallForm {
+    Real a_low = 0;                 ///< at most A; 0 when not even its sign is sure: then nothing is pruned by distance
+    std::array<Real, 3> n{};
+    std::array<Real, 3> n_error{};  ///< of each component, rounding of later evaluations included
+    Real allowance = 0;             ///< at least A (w_p - w_a) for every vertex p
+};
+
+/// Made by BallSearch only.
 struct Ball {
     Vec3 base{};
-    double a = 0;
-    std::array<double, 3> n{};
-    std::array<double, 3> n_error{};  ///< of each component, rounding of later evaluations included
-    double a_low = 0;                 ///< at most A; 0 when not even its sign is sure: then nothing is pruned by distance
-    double allowance = 0;             ///< at least A (w_p - w_a) for every vertex p
-    double base_weight = 0;           ///< w_a, scaled
-    double radius_squared = 0;        ///< |N|^2 / (4 A^2), rounded: of the base's distance from the centre
+    long double a = 0;
+    BallForm<double> rough;
+    /// For what the rough form can't exclude: thousands of vertices on a tangent of the ball, with spacings below the square root of a rounding.
+    BallForm<long double> close;
+    double base_weight = 0;     ///< w_a, scaled
+    double radius_squared = 0;  ///< |N|^2 / (4 A^2), rounded: of the base's distance from the centre
 };
 
 class BallSearch {
@@ -60,10 +68,12 @@ private:
     };
     static constexpr std::size_t kLeaf = 8;
 
+    template <class Real>
+    [[nodiscard]] BallForm<Real> form(long double a, const std::array<long double, 3>& n, long double a_error, long double n_error, long double largest_difference) const;
     [[nodiscard]] Ball finish(const WeightedPoint& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const;
     void build(std::size_t begin, std::size_t end, std::size_t node);
     [[nodiscard]] static bool excludes(const Ball& ball, const Box& box);
-    [[nodiscard]] static bool excludes(const Ball& ball, const Vec3& point);
+    [[nodiscard]] static bool excludes(const Ball& ball, const Vec3& point) { return excludes(ball, {{point.x, point.y, point.z}, {point.x, point.y, point.z}}); }
 
     template <class Visit>
     bool search(const Ball& ball, std::size_t begin, std::size_t end, std::size_t node, const Box& box, Visit& visit) const {

@@ -55,8 +55,8 @@ bool spans_plane_inside(const SuspectMesh& mesh, const ConstraintTriangle& face,
     return inner > 0 && (outer > 0 || inner == 1);
 }
 
-/// Pairs of a tetrahedron and a hull face whose box it meets, per element, that are looked at before it is worth trying another way:
-/// ordinary meshes have TODO, and each costs a few signs.
+/// Pairs of a tetrahedron and a hull face whose box it meets, per element, that are looked at before it is worth trying another way: each costs a few
+/// signs, and these together about as much as the other way.
 constexpr std::size_t kPairsPerElement = 100;
 
 enum class InsideHull : std::uint8_t { clear, not_clear, too_many };

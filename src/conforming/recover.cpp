@@ -41,7 +41,8 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
         if (round > kTooManyRounds)
             throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("facet {} could not be recovered", mesh_.plc().facets[f.index()].source_facet + 1),
                             {{EntityKind::facet, mesh_.plc().facets[f.index()].source_facet + 1, mesh_.plc().facets[f.index()].origin}});
-        poll_or_throw(f);
+        // Time and memory only: most facets need no vertex.
+        guard_.require(0, 0, 0, [&] { return ElementRef{EntityKind::facet, mesh_.plc().facets[f.index()].source_facet + 1U, mesh_.plc().facets[f.index()].origin}; });
         FacetDelaunay flat(mesh_, f);
         const std::vector<FacetDelaunay::Missing> missing = flat.match_faces(mesh_);
         if (missing.empty()) {

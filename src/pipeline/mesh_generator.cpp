@@ -29,8 +29,8 @@
 namespace wellmesh {
 namespace {
 
-/// Of memory at the peak, of a large mesh: measured TODO.
-constexpr double kBytesPerVertex = 1000;
+/// Of memory at the peak, which is in the certificate: 255 MB measured for 395 540 vertices of a cube.
+constexpr double kBytesPerVertex = 650;
 
 void check_vertex_sizes(const Plc& plc) {
     const std::vector<double>& sizes = plc.vertex_sizes;
@@ -72,7 +72,7 @@ public:
         try {
             return run();
         } catch (const std::bad_alloc&) {
-            throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("memory ran out in stage {}; a memory limit would have ended the run in time", to_string(guard_.stage())));
+            throw MeshError(ErrorCode::budget_exhausted, guard_.stage(), fmt::format("out of memory in stage {}; a memory limit would have ended the run in time", to_string(guard_.stage())));
         }
     }
 
@@ -144,6 +144,7 @@ private:
             if (given_) settle_regions(mesh);
             boundary.conform();
             count();
+            require_room(vertices_);
             guard_.set_conforming();
             if (given_) result_.statistics.given->added_for_conformity = mesh.vertex_count() - before;
         });
@@ -214,7 +215,7 @@ private:
         const auto& most = options_.limits.max_vertices;
         if (most && vertices > *most)
             throw MeshError(ErrorCode::budget_exhausted, guard_.stage(),
-                            fmt::format("at most {} vertices were allowed, and {} are there before the first new one, in stage {}", *most, vertices, to_string(guard_.stage())));
+                            fmt::format("at most {} vertices were allowed, and {} are there already in stage {}, before the mesh conformed to its input", *most, vertices, to_string(guard_.stage())));
     }
 
     /// A size that asks for more than a mesh can hold is told at once, not when memory ends. A limit of the user's may end the run before.

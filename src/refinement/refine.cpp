@@ -32,7 +32,9 @@ SizeFieldDomain sampled_domain(const ConformingMesh& mesh, RunGuard& guard) {
 }  // namespace
 
 Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options)
-    : mesh_(mesh), boundary_(boundary), guard_(guard), exemptions_(mesh, boundary.acute()), sizes_(mesh.plc(), options.size, sampled_domain(mesh, guard)), max_radius_edge_(options.quality.max_radius_edge_ratio) {
+    : mesh_(mesh), boundary_(boundary), guard_(guard), exemptions_(mesh, boundary.acute()), sizes_(mesh.plc(), options.size, sampled_domain(mesh, guard)),
+      max_radius_edge_(options.quality.max_radius_edge_ratio),
+      max_vertices_(options.limits.max_vertices) {
     double largest = 0;
     for (const Vec3& p : mesh.plc().vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     rounding_ = 64 * largest * 0x1p-53;  // heights of a few ulp
@@ -386,12 +388,21 @@ void Refiner::split_sized_boundary() {
 RunGuard::Verdict Refiner::refine() {
     split_sized_boundary();
     enqueue_all();
-    keeps_nearly_full_ = true;
+    keeps_last_ = max_vertices_.has_value();
     const RunGuard::Verdict verdict = drain();
-    keeps_nearly_full_ = false;
-    if (nearly_full_ && guard_.has_too_many(mesh_.vertex_count())) mesh_ = std::move(*nearly_full_);
-    nearly_full_.reset();
+    keeps_last_ = false;
+    if (last_ && guard_.has_too_many(mesh_.vertex_count())) mesh_ = std::move(*last_);
+    last_.reset();
     return verdict;
+}
+
+/// A cascade may take more vertices than are left, by hundreds: then the last copy is the result. One is made whenever half as many are left as at the
+/// one before, so there are few, and little is lost.
+void Refiner::keep_last() {
+    const std::uint64_t count = mesh_.vertex_count(), left = *max_vertices_ - std::min(count, *max_vertices_);
+    if ((last_ && left > left_at_last_ / 2) || left == 0 || !guard_.can_double()) return;
+    last_ = mesh_;
+    left_at_last_ = left;
 }
 
 RunGuard::Verdict Refiner::drain() {
@@ -401,7 +412,7 @@ RunGuard::Verdict Refiner::drain() {
             boundary_.step();
             continue;
         }
-        if (keeps_nearly_full_ && !nearly_full_ && guard_.is_nearly_full(mesh_.vertex_count()) && guard_.can_double()) nearly_full_ = mesh_;
+        if (keeps_last_) keep_last();
         report_milestones();
         if (!by_sliver_.empty() && mesh_.vertex_count() >= sliver_budget_) {
             sliver_budget_spent_ = true;

@@ -61,6 +61,7 @@ public:
 
 private:
     RunGuard::Verdict drain();
+    void keep_last();
     void enqueue(const std::vector<TetId>& tets);
     void enqueue_all();
     void process(TetId t, InsertionReason reason);
@@ -84,10 +85,12 @@ private:
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
     AcuteExemptions exemptions_;
-    std::optional<ConformingMesh> nearly_full_;  // of refine(), in case the vertices that are left are not enough for a cascade
-    bool keeps_nearly_full_ = false;
+    std::optional<ConformingMesh> last_;  // of refine(), with fewer vertices than the user allows
+    std::uint64_t left_at_last_ = 0;      // vertices that were left then
+    bool keeps_last_ = false;
     SizeField sizes_;
     double max_radius_edge_;
+    std::optional<std::uint64_t> max_vertices_;
     std::optional<SliverRule> sliver_rule_{};
     std::uint64_t sliver_budget_ = std::numeric_limits<std::uint64_t>::max();
     bool sliver_budget_spent_ = false;

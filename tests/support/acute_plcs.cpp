@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/rng.hpp"
+#include "core/vec3_math.hpp"
 #include "wellmesh/delaunay.hpp"
 
 namespace wellmesh::testing {
