@@ -55,7 +55,7 @@ int run(const CheckCommand& arguments, Interrupt& interrupt) {
 void add_check_command(CLI::App& program, Command& selected) {
     CLI::App& command = *program.add_subcommand("check", "prove or refute, by exact arithmetic, what a mesh should be");
     auto arguments = std::make_shared<CheckCommand>();
-    command.add_option("MESH", arguments->mesh, "tetrahedral mesh of any tool: .mesh (ASCII), .node/.ele")->required()->type_name("");
+    command.add_option("MESH", arguments->mesh, "tetrahedral mesh of any tool: .mesh (ASCII) .msh .vtu .node/.ele")->required()->type_name("");
     command.add_option("--plc", arguments->plc, "the domain that the mesh claims to fill (default: claims about it are not checked)")->type_name("FILE");
     command.add_option("--weights", arguments->weights, "the vertices' weights, .sol or .node: the mesh claims to be weighted Delaunay (default: Delaunay)")
         ->type_name("FILE");

@@ -24,6 +24,7 @@ void add_check_command(CLI::App& program, Command& selected);
 void add_quality_command(CLI::App& program, Command& selected);
 void add_doctor_command(CLI::App& program, Command& selected);
 void add_delaunay_command(CLI::App& program, Command& selected);
+void add_convert_command(CLI::App& program, Command& selected);
 void add_example_command(CLI::App& program, Command& selected);
 
 /// Prints a report for people: to standard output, or to standard error when a JSON report has taken that.

@@ -62,7 +62,7 @@ void add_delaunay_command(CLI::App& program, Command& selected) {
     CLI::App& command = *program.add_subcommand("delaunay", "Delaunay triangulation of a point set; prints timings as JSON");
     auto arguments = std::make_shared<DelaunayCommand>();
     command.add_option("POINTS", arguments->points, "points: .node .xyz .ply")->required()->type_name("");
-    add_output_flag(command, arguments->outputs, "mesh to write: .mesh .vtu .msh .node/.ele, by extension; may be given several times");
+    add_output_flag(command, arguments->outputs, "mesh to write: .mesh .vtu .msh .inp .node/.ele, by extension; may be given several times");
     add_write_flags(command, arguments->write);
     command.add_option("--json", arguments->json, "write the timings to this file instead of standard output")->type_name("FILE");
     command.callback([&selected, arguments] { selected = [arguments](Interrupt& interrupt) { return run(*arguments, interrupt); }; });

@@ -10,6 +10,7 @@
 #include "flags.hpp"
 #include "json_report.hpp"
 #include "render_report.hpp"
+#include "seed_flags.hpp"
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/io.hpp"
 
@@ -20,12 +21,15 @@ namespace {
 struct DoctorCommand {
     std::string input, json;
     MeshOptions options;
+    SeedFlags seeds;
 };
 
 int run(const DoctorCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.options);
     require_report(arguments.json, {arguments.input});
-    const Diagnosis diagnosis = diagnose(read_plc(arguments.input), arguments.options);
+    Plc plc = read_plc(arguments.input);
+    add_seeds(arguments.seeds, plc);
+    const Diagnosis diagnosis = diagnose(plc, arguments.options);
     const int status = diagnosis.has_errors() ? kBadInput : kGoalsMet;
     if (!arguments.json.empty()) {
         Json json = json_header("doctor", arguments.input);
@@ -43,8 +47,9 @@ int run(const DoctorCommand& arguments, Interrupt& interrupt) {
 void add_doctor_command(CLI::App& program, Command& selected) {
     CLI::App& command = *program.add_subcommand("doctor", "list everything that is wrong with an input");
     auto arguments = std::make_shared<DoctorCommand>();
-    command.add_option("INPUT", arguments->input, "domain: .poly .smesh .off .stl .obj .ply .mesh")->required()->type_name("");
+    command.add_option("INPUT", arguments->input, "domain: .poly .smesh .off .stl .obj .ply .mesh .msh .vtp .vtu")->required()->type_name("");
     add_coplanar_tolerance_flag(command, arguments->options);
+    add_seed_point_flags(command, arguments->seeds);
     add_json_flag(command, arguments->json);
     command.callback([&selected, arguments] { selected = [arguments](Interrupt& interrupt) { return run(*arguments, interrupt); }; });
 }

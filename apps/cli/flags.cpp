@@ -25,9 +25,15 @@ namespace wellmesh::cli {
 
 namespace fs = std::filesystem;
 
+std::string lower_extension(const fs::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    return extension;
+}
+
 namespace {
 
-constexpr std::array<const char*, 5> kMeshExtensions = {".mesh", ".vtu", ".msh", ".node", ".ele"};
+constexpr std::array<const char*, 6> kMeshExtensions = {".mesh", ".vtu", ".msh", ".inp", ".node", ".ele"};
 
 [[noreturn]] void bad_options(const std::vector<std::string>& problems) {
     throw MeshError(ErrorCode::bad_options, Stage::read, fmt::format("{}", fmt::join(problems, "\n  ")));
@@ -73,12 +79,6 @@ std::uint64_t read_bytes(const std::string& text, const std::string& flag) {
     return static_cast<std::uint64_t>(value * unit);
 }
 
-std::string lower_extension(const fs::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    return extension;
-}
-
 /// All files that reading or writing this one touches: in TetGen's family one name stands for several.
 std::vector<fs::path> files_behind(const fs::path& path) {
     std::vector<fs::path> files{resolved(path)};
@@ -88,6 +88,7 @@ std::vector<fs::path> files_behind(const fs::path& path) {
     };
     if (extension == ".node" || extension == ".ele" || extension == ".mtr") add({".node", ".ele", ".face", ".edge", ".mtr"});
     if (extension == ".poly" || extension == ".smesh") add({".node", ".mtr"});
+    if (extension == ".vtu") add({".boundary.vtu"});
     return files;
 }
 
@@ -97,6 +98,12 @@ bool share_a_file(const fs::path& a, const fs::path& b) {
         for (const fs::path& q : files_behind(b))
             if (p == q || fs::equivalent(p, q, ignored)) return true;
     return false;
+}
+
+References read_references(const std::string& text) {
+    if (text == "entity") return References::entity;
+    if (text == "marker") return References::marker;
+    throw CLI::ValidationError("--references", fmt::format("must be entity or marker, not '{}'", text));
 }
 
 Mode read_mode(const std::string& text) {
@@ -256,6 +263,10 @@ void add_mesh_flags(CLI::App& command, MeshOptions& options) {
 
 void add_write_flags(CLI::App& command, WriteOptions& options) {
     command.add_option("--msh-version", options.msh_version, "flavour of .msh files: 41 or 22")->type_name("41|22")->capture_default_str();
+    command.add_option_function<std::string>(
+        "--references", [&options](const std::string& text) { options.references = read_references(text); },
+        "what references in a .mesh are: numbers of the input's vertices, segments and facets, or their markers")
+        ->type_name("entity|marker")->default_str("entity");
 }
 
 void add_certify_flags(CLI::App& command, CertifyOptions& options) {
@@ -311,11 +322,15 @@ void require_valid(const CertifyOptions& options) {
 
 void require_mesh_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
     std::vector<std::string> problems;
+    for (const std::string& output : outputs)
+        if (const std::string extension = lower_extension(output); std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) == kMeshExtensions.end())
+            problems.push_back(fmt::format("{}: unknown mesh format '{}'; known are {}", output, extension, fmt::join(kMeshExtensions, " ")));
+    require_outputs(outputs, inputs, std::move(problems));
+}
+
+void require_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs, std::vector<std::string> problems) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const std::string& output = outputs[i];
-        const std::string extension = lower_extension(output);
-        if (std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) == kMeshExtensions.end())
-            problems.push_back(fmt::format("{}: unknown mesh format '{}'; known are {}", output, extension, fmt::join(kMeshExtensions, " ")));
         for (const std::string& input : inputs)
             if (share_a_file(output, input)) problems.push_back(fmt::format("{}: writing it would replace the input {}", output, input));
         const bool twice = std::any_of(outputs.begin(), outputs.begin() + static_cast<std::ptrdiff_t>(i), [&](const std::string& o) { return share_a_file(o, output); });

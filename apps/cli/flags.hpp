@@ -2,6 +2,7 @@
 // Flag <-> option field. No default of its own: what --help prints is read from the structs.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ class Option;
 }
 
 namespace wellmesh::cli {
+
+/// Extension in lower case, with its dot.
+[[nodiscard]] std::string lower_extension(const std::filesystem::path& path);
 
 struct GoalFlags {
     const CLI::Option *radius_edge = nullptr, *dihedral = nullptr;
@@ -44,6 +48,9 @@ void require_valid(const WriteOptions& options);
 /// @throws MeshError{bad_options} for an unknown extension, a file named twice, or one that would replace an input file;
 ///         MeshError{cannot_write} for what can be known to fail.
 void require_mesh_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
+
+/// The part of it that concerns no format. @param problems  found already, listed with the others
+void require_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs, std::vector<std::string> problems = {});
 
 /// @throws MeshError{bad_options} if the report `json` would replace one of `others`, MeshError{cannot_write} for what can be known
 ///         to fail. An empty name is no report.

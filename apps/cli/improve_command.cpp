@@ -18,8 +18,8 @@ void add_improve_command(CLI::App& program, Command& selected) {
     const auto job = std::make_shared<MeshJob>();
     job->command = "improve";
     job->inputs.resize(2);
-    command.add_option("MESH", job->inputs[0], "tetrahedral mesh of any tool: .mesh (ASCII), .node/.ele")->required()->type_name("");
-    command.add_option("--plc", job->inputs[1], "the domain that the mesh fills: .poly .smesh .off .stl .obj .ply .mesh")->required()->type_name("FILE");
+    command.add_option("MESH", job->inputs[0], "tetrahedral mesh of any tool: .mesh (ASCII) .msh .vtu .node/.ele")->required()->type_name("");
+    command.add_option("--plc", job->inputs[1], "the domain that the mesh fills: .poly .smesh .off .stl .obj .ply .mesh .msh .vtp .vtu")->required()->type_name("FILE");
     add_goal_flags(command, job->options);
     add_seed_flag(command, job->options);
     add_limit_flags(command, job->options);

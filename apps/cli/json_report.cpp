@@ -27,6 +27,14 @@ Json to_json(const std::vector<ElementRef>& elements) {
     return json;
 }
 
+/// A volume that is not finite becomes null: the outer cell's.
+Json to_json(const std::vector<CellSummary>& cells) {
+    Json json = Json::array();
+    for (const CellSummary& cell : cells)
+        json.push_back({{"region", cell.region}, {"name", cell.name}, {"filled", cell.filled}, {"volume", cell.volume}, {"inside", to_json(cell.inside)}});
+    return json;
+}
+
 const char* key(Claim::State state) {
     switch (state) {
         case Claim::State::not_checked: return "not_checked";
@@ -180,6 +188,7 @@ Json to_json(const GivenMeshStatistics& given) {
 
 Json to_json(const MeshStatistics& statistics) {
     Json json;
+    json["cells"] = to_json(statistics.cells);
     if (statistics.given) json["given_mesh"] = to_json(*statistics.given);
     json["input_vertices"] = statistics.input_vertices;
     json["segment_vertices"] = statistics.segment_vertices;
@@ -209,9 +218,6 @@ Json to_json(const Diagnosis& diagnosis) {
     for (const Defect& defect : diagnosis.defects)
         defects.push_back({{"severity", key(defect.severity)}, {"kind", to_string(defect.kind)}, {"message", defect.message},
                            {"value", defect.value}, {"elements", to_json(defect.elements)}});
-    Json cells = Json::array();
-    for (const CellSummary& cell : diagnosis.cells)
-        cells.push_back({{"region", cell.region}, {"filled", cell.filled}, {"volume", cell.volume}, {"inside", to_json(cell.inside)}});
     Json json;
     json["has_errors"] = diagnosis.has_errors();
     json["vertices"] = diagnosis.vertices;
@@ -219,7 +225,7 @@ Json to_json(const Diagnosis& diagnosis) {
     json["facets"] = diagnosis.facets;
     json["coplanar_tolerance"] = diagnosis.coplanar_tolerance;
     json["defects"] = std::move(defects);
-    json["cells"] = std::move(cells);
+    json["cells"] = to_json(diagnosis.cells);
     return json;
 }
 

@@ -82,7 +82,7 @@ int run(int argc, char** argv) {
     program.failure_message(CLI::FailureMessage::simple);
     Command selected;
     for (const auto add : {add_mesh_command, add_improve_command, add_study_command, add_check_command, add_quality_command, add_doctor_command, add_delaunay_command,
-                           add_example_command})
+                           add_convert_command, add_example_command})
         add(program, selected);
     program.footer(exit_status_footer());
     // An unset shell variable is no number, and no file either. Lists and seeds say so themselves, with the valid form.

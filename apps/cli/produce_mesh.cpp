@@ -29,12 +29,14 @@ std::uint64_t peak_memory_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
 }
 
+constexpr std::size_t kMostCells = 20;  // of the text; JSON has all
+
 std::string render(const MeshResult& result, const std::vector<StageTime>& stages, const std::vector<std::filesystem::path>& files) {
     std::string text = fmt::format("{} vertices, {} tetrahedra: {}\n\n", result.mesh.vertices.size(), result.mesh.tets.size(),
                                    to_string(result.termination));
     for (const std::string& part : {render_goals(result.goals), render_claims(result.certificate),
                                     result.invariants ? render_invariants(*result.invariants) : std::string(), render_shape(result.certificate),
-                                    render_regions(result.certificate), render_stages(stages)})
+                                    render_regions(result.certificate), render_cells(result.statistics.cells, kMostCells), render_stages(stages)})
         if (!part.empty()) text += part + '\n';
     // Whoever checks the file against its input must allow what the input's own rounding did.
     const CertifyOptions defaults;
@@ -124,7 +126,7 @@ int run(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& r
 }  // namespace
 
 void add_job_flags(CLI::App& command, MeshJob& job) {
-    add_output_flag(command, job.outputs, "mesh to write: .mesh .vtu .msh .node/.ele, by extension; may be given several times");
+    add_output_flag(command, job.outputs, "mesh to write: .mesh .vtu .msh .inp .node/.ele, by extension; may be given several times");
     add_write_flags(command, job.write);
     add_json_flag(command, job.json);
     command.add_flag("--quiet", job.quiet, "no report and no progress line; errors still go to standard error");

@@ -194,15 +194,20 @@ std::string render_diagnosis(const Diagnosis& diagnosis) {
         for (const auto& [kind, total] : others)
             if (total > kMostOthers) text += fmt::format("  and {} more: {}; --json FILE lists them all\n", total - kMostOthers, to_string(kind));
     }
-    if (!diagnosis.cells.empty()) {
-        TextTable table({{"region", Align::right}, {"meshed"}, {"volume", Align::right}, {"point inside"}});
-        for (const CellSummary& cell : diagnosis.cells) {
-            const bool bounded = std::isfinite(cell.volume);
-            table.add({fmt::format("{}", cell.region), cell.filled ? "yes" : "no", bounded ? fmt::format("{:.12g}", cell.volume) : "unbounded",
-                       bounded ? point(cell.inside) : ""});
-        }
-        text += "Cells\n" + table.str();
+    return text + render_cells(diagnosis.cells);
+}
+
+std::string render_cells(const std::vector<CellSummary>& cells, std::size_t most) {
+    if (cells.empty()) return {};
+    TextTable table({{"region", Align::right}, {"name"}, {"meshed"}, {"volume", Align::right}, {"point inside"}});
+    for (std::size_t c = 0; c < std::min(cells.size(), most); ++c) {
+        const CellSummary& cell = cells[c];
+        const bool bounded = std::isfinite(cell.volume);
+        table.add({fmt::format("{}", cell.region), cell.name, cell.filled ? "yes" : "no", bounded ? fmt::format("{:.12g}", cell.volume) : "unbounded",
+                   bounded ? point(cell.inside) : ""});
     }
+    std::string text = "Cells\n" + table.str();
+    if (cells.size() > most) text += fmt::format("  and {} more; --json FILE lists them all\n", cells.size() - most);
     return text;
 }
 

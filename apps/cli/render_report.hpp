@@ -2,6 +2,7 @@
 // Reports for people: plain text tables.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,7 @@ namespace wellmesh::cli {
 [[nodiscard]] std::string render_regions(const Certificate& certificate);
 [[nodiscard]] std::string render_stages(const std::vector<StageTime>& stages);
 [[nodiscard]] std::string render_diagnosis(const Diagnosis& diagnosis);
+/// The first `most` cells of the input. Empty if there are none.
+[[nodiscard]] std::string render_cells(const std::vector<CellSummary>& cells, std::size_t most = static_cast<std::size_t>(-1));
 
 }  // namespace wellmesh::cli

@@ -34,6 +34,7 @@ struct CellSummary {
     double volume = 0;
     Vec3 inside{};
     bool filled = false;
+    std::string name{};  ///< of the region, if it has one
 };
 
 struct Diagnosis {

@@ -14,37 +14,52 @@
 
 namespace wellmesh {
 
-/// Reads .off .stl .obj .ply .poly .smesh (a .node beside them as they ask; sizes of vertices from a .mtr beside .poly and .smesh), or the surface of a .mesh.
+/// Reads .off .stl .obj .ply .poly .smesh (a .node beside them as they ask; sizes of vertices from a .mtr beside .poly and .smesh), or points, edges and
+/// faces of a .mesh, .msh, .vtp or .vtu.
 /// @throws MeshError  cannot_read, bad_input (file, line, token).
 [[nodiscard]] Plc read_plc(const std::filesystem::path& path);
 
 /// Reads points only: .node .xyz .ply.
 [[nodiscard]] std::vector<Vec3> read_points(const std::filesystem::path& path);
 
-/// Reads a tetrahedral mesh: MEDIT .mesh (ASCII), .node/.ele.
+/// Reads a tetrahedral mesh: MEDIT .mesh (ASCII), Gmsh .msh (2.x, 4.1), .vtu (with NAME.boundary.vtu where it stands beside), .node/.ele.
 [[nodiscard]] TetMesh read_mesh(const std::filesystem::path& path);
 
-/// Reads a mesh with target edge lengths at its vertices: TetGen's .node, .ele and .mtr (any of the three names them).
-/// @throws MeshError  cannot_read, bad_input (file, line, token).
+/// Reads a mesh with target edge lengths at its vertices: TetGen's .node, .ele and .mtr (any of the three names them), $NodeData of a .msh or point
+/// data of a .vtu, one number a vertex. Of several fields one named `size`, `target_size` or `h` is taken, else the only one.
+/// @throws MeshError  cannot_read, bad_input (file, line, token; no such field, a vertex without a size, a size below 0).
 [[nodiscard]] BackgroundMesh read_background_mesh(const std::filesystem::path& path);
 
 /// Reads the weights of a mesh's vertices: MEDIT's solution format (.sol, one scalar a vertex), or the attribute of a .node.
 /// @param vertices  how many there must be. @throws MeshError  cannot_read, bad_input (file, line, token).
 [[nodiscard]] std::vector<double> read_weights(const std::filesystem::path& path, std::size_t vertices);
 
+/// What the references of a MEDIT .mesh say.
+enum class References {
+    entity,  ///< the number, from 1, of the input vertex, segment or facet; 0 for vertices that are not the input's
+    marker   ///< the input's marker of it
+};
+
 /// Which flavour of a format to write where there are several.
 struct WriteOptions {
     int msh_version = 41;    ///< 41 or 22
+    References references = References::entity;
+    bool binary_stl = false;
     bool sync = false;       ///< force the data to the disk before a file appears under its name
     std::stop_token stop{};  ///< polled while writing; when requested: MeshError{cancelled}, and no file is left
 };
 
-/// Writes .mesh .vtu .msh, or .node/.ele/.face/.edge (named after the .node or .ele path). Where the mesh has weights they are a point field of
+/// Writes .mesh, .vtu (and NAME.boundary.vtu), .msh, .inp, or .node/.ele/.face/.edge (named after the .node or .ele path). Where the mesh has weights they are a point field of
 /// a .vtu, node data of a .msh, the attribute of a .node, and beside a .mesh a .sol file (docs/conventions.md).
 /// @return the files written. @throws MeshError  cannot_write; then no file is left half written.
 std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::filesystem::path& path, const WriteOptions& options = {});
 
-/// Writes a PLC as .poly, e.g. for examples and for other tools.
-void write_plc(const Plc& plc, const std::filesystem::path& path);
+/// Writes a complex as .poly .smesh .off .obj .ply .stl .mesh .msh .vtp. What the format can't state (not_carried(), convert.hpp) is left out; facets of
+/// several polygons or with holes become triangles where it has none, polygons of more than three corners where it has but triangles.
+/// @return the files written. @throws MeshError  cannot_write; bad_input: a facet that can't be triangulated.
+std::vector<std::filesystem::path> write_plc(const Plc& plc, const std::filesystem::path& path, const WriteOptions& options = {});
+
+/// Whether a file is a tetrahedral mesh: a .node or .ele, or a .mesh, .msh or .vtu with tetrahedra. @throws as read_mesh
+[[nodiscard]] bool holds_mesh(const std::filesystem::path& path);
 
 }  // namespace wellmesh

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "wellmesh/names.hpp"
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
@@ -50,6 +51,7 @@ struct Plc {
     std::vector<PlcSegment> segments;
     std::vector<Vec3> hole_seeds;
     std::vector<RegionSeed> region_seeds;
+    Names names;  ///< of the markers of vertices, segments and facets, and of the ids of region seeds
     FillRule fill = FillRule::bounded_cells;
     MergeRule merge_coplanar = MergeRule::triangles;  ///< facets with different markers are never merged
 

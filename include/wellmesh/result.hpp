@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "wellmesh/certificate.hpp"
+#include "wellmesh/diagnosis.hpp"
 #include "wellmesh/error.hpp"
 #include "wellmesh/exemption.hpp"
 #include "wellmesh/invariants.hpp"
@@ -49,6 +50,7 @@ struct GivenMeshStatistics {
 struct MeshStatistics {
     std::optional<GivenMeshStatistics> given{};  ///< improve() only
     std::vector<StageTime> stages;
+    std::vector<CellSummary> cells;  ///< of the input, the unbounded one first
     std::uint64_t input_vertices = 0, segment_vertices = 0, facet_vertices = 0, interior_vertices = 0;
     std::uint64_t moved_vertices = 0, removed_vertices = 0;
     std::uint64_t weighted_vertices = 0;      ///< with a weight above 0: then the mesh is weighted Delaunay

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "wellmesh/names.hpp"
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
@@ -36,6 +37,10 @@ struct TetMesh {
 
     std::vector<std::array<std::uint32_t, 2>> subsegments;  ///< mesh edges that represent segments
     std::vector<std::int32_t> subsegment_segments;          ///< reference: number, from 1, of the segment
+    std::vector<std::int32_t> subsegment_markers;           ///< the input's marker of that segment; or empty: all 0
+
+    std::vector<std::int32_t> vertex_markers;  ///< the input's markers of its vertices, 0 for other vertices; or empty: all 0
+    Names names;                               ///< of vertex markers, segment markers, facet markers and regions
 
     /// Rounding that the coordinates underwent before they became doubles, as Plc::relative_rounding. Known of meshes read from files; else 0.
     double relative_rounding = 0;

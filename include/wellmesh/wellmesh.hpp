@@ -4,6 +4,7 @@
 
 #include "wellmesh/background_mesh.hpp"
 #include "wellmesh/certificate.hpp"
+#include "wellmesh/convert.hpp"
 #include "wellmesh/delaunay.hpp"
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/error.hpp"
@@ -12,6 +13,7 @@
 #include "wellmesh/improve.hpp"
 #include "wellmesh/invariants.hpp"
 #include "wellmesh/io.hpp"
+#include "wellmesh/names.hpp"
 #include "wellmesh/options.hpp"
 #include "wellmesh/plc.hpp"
 #include "wellmesh/predicates.hpp"

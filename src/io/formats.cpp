@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "io/plc_formats.hpp"
 #include "io/readers.hpp"
 #include "io/writers.hpp"
+#include "wellmesh/convert.hpp"
 #include "wellmesh/io.hpp"
 
 namespace wellmesh {
@@ -33,10 +35,17 @@ void check_corner(std::uint32_t vertex, std::size_t vertices, EntityKind kind, s
     if (vertex >= vertices) bad_output(kind, number, fmt::format("{} (from 0) uses vertex {}, but there are only {}", number, vertex, vertices));
 }
 
+void check_writable(const WriteOptions& options) {
+    if (options.msh_version != 41 && options.msh_version != 22)
+        throw MeshError(ErrorCode::bad_options, Stage::write, fmt::format("msh_version is 41 or 22, not {}", options.msh_version));
+}
+
 /// Arrays that disagree would make the writers read beyond their ends.
 void check_writable(const TetMesh& mesh) {
     if (mesh.tet_regions.size() != mesh.tets.size() || mesh.subface_facets.size() != mesh.subfaces.size() ||
-        mesh.subface_markers.size() != mesh.subfaces.size() || mesh.subsegment_segments.size() != mesh.subsegments.size())
+        mesh.subface_markers.size() != mesh.subfaces.size() || mesh.subsegment_segments.size() != mesh.subsegments.size() ||
+        (!mesh.subsegment_markers.empty() && mesh.subsegment_markers.size() != mesh.subsegments.size()) ||
+        (!mesh.vertex_markers.empty() && mesh.vertex_markers.size() != mesh.vertices.size()))
         throw MeshError(ErrorCode::bad_input, Stage::write, "cannot write: the mesh's arrays of one kind of element differ in length");
     check_finite(mesh.vertices);
     if (!mesh.weights.empty() && mesh.weights.size() != mesh.vertices.size())
@@ -81,8 +90,11 @@ Plc read_plc(const std::filesystem::path& path) {
                                                  : extension == ".poly"  ? io::read_poly
                                                  : extension == ".smesh" ? io::read_smesh
                                                  : extension == ".mesh"  ? io::read_medit_surface
+                                                 : extension == ".msh"   ? io::read_msh_surface
+                                                 : extension == ".vtp"   ? io::read_vtp_surface
+                                                 : extension == ".vtu"   ? io::read_vtu_surface
                                                                          : nullptr;
-    if (reader == nullptr) unknown_format(ErrorCode::cannot_read, Stage::read, "read", path, ".off .stl .obj .ply .poly .smesh .mesh");
+    if (reader == nullptr) unknown_format(ErrorCode::cannot_read, Stage::read, "read", path, ".off .stl .obj .ply .poly .smesh .mesh .msh .vtp .vtu");
     return reader(io::read_source(path));
 }
 
@@ -99,14 +111,18 @@ std::vector<Vec3> read_points(const std::filesystem::path& path) {
 TetMesh read_mesh(const std::filesystem::path& path) {
     const std::string extension = io::lower_case_extension(path);
     if (extension == ".mesh") return io::read_medit_mesh(io::read_source(path));
+    if (extension == ".msh") return io::read_msh_mesh(io::read_source(path));
+    if (extension == ".vtu") return io::read_vtu_mesh(io::read_source(path));
     if (extension == ".node" || extension == ".ele") return io::read_tetgen_mesh(path);
-    unknown_format(ErrorCode::cannot_read, Stage::read, "read a mesh from", path, ".mesh .node .ele");
+    unknown_format(ErrorCode::cannot_read, Stage::read, "read a mesh from", path, ".mesh .msh .vtu .node .ele");
 }
 
 BackgroundMesh read_background_mesh(const std::filesystem::path& path) {
     const std::string extension = io::lower_case_extension(path);
     if (extension == ".node" || extension == ".ele" || extension == ".mtr") return io::read_tetgen_background(path);
-    unknown_format(ErrorCode::cannot_read, Stage::read, "read sizes from", path, ".node .ele .mtr");
+    if (extension != ".msh" && extension != ".vtu") unknown_format(ErrorCode::cannot_read, Stage::read, "read sizes from", path, ".msh .vtu .node .ele .mtr");
+    const io::SourceFile source = io::read_source(path);
+    return io::read_background(source, extension == ".msh" ? io::read_msh(source, false) : io::read_vtu(source, false));
 }
 
 std::vector<double> read_weights(const std::filesystem::path& path, std::size_t vertices) {
@@ -120,32 +136,51 @@ std::vector<double> read_weights(const std::filesystem::path& path, std::size_t 
 
 std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
     const std::string extension = io::lower_case_extension(path);
-    if (options.msh_version != 41 && options.msh_version != 22)
-        throw MeshError(ErrorCode::bad_options, Stage::write, fmt::format("msh_version is 41 or 22, not {}", options.msh_version));
+    check_writable(options);
     check_writable(mesh);
     io::OutputSet files(options.stop, options.sync);
     if (extension == ".mesh") {
-        io::write_medit(mesh, files.add(path));
+        io::write_medit(mesh, options.references, {}, files.add(path));
         const auto weights = std::filesystem::path(path).replace_extension(".weights.sol");
         if (mesh.weights.empty()) files.drop(weights);
         else io::write_medit_weights(mesh.weights, files.add(weights));
     } else if (extension == ".vtu")
-        io::write_vtu(mesh, files.add(path));
+        io::write_vtu(mesh, path, files);
     else if (extension == ".msh")
         (options.msh_version == 41 ? io::write_msh41 : io::write_msh22)(mesh, files.add(path));
+    else if (extension == ".inp")
+        io::write_abaqus(mesh, files.add(path));
     else if (extension == ".node" || extension == ".ele")
         io::write_tetgen(mesh, path, files);
     else
-        unknown_format(ErrorCode::cannot_write, Stage::write, "write", path, ".mesh .vtu .msh .node .ele");
+        unknown_format(ErrorCode::cannot_write, Stage::write, "write", path, ".mesh .vtu .msh .inp .node .ele");
     return files.commit();
 }
 
-void write_plc(const Plc& plc, const std::filesystem::path& path) {
-    if (io::lower_case_extension(path) != ".poly") unknown_format(ErrorCode::cannot_write, Stage::write, "write a complex to", path, ".poly");
+std::vector<std::filesystem::path> write_plc(const Plc& plc, const std::filesystem::path& path, const WriteOptions& options) {
+    const std::string extension = io::lower_case_extension(path);
+    const io::PlcFormat* const format = io::find_plc_format(extension);
+    if (format == nullptr) unknown_format(ErrorCode::cannot_write, Stage::write, "write a complex to", path, ".poly .smesh .off .obj .ply .stl .mesh .msh .vtp");
+    check_writable(options);
     check_writable(plc);
-    io::OutputSet files;
-    io::write_poly(plc, files.add(path));
-    files.commit();
+    io::OutputSet files(options.stop, options.sync);
+    const bool needs_simple = format->most_corners > 0;
+    const Plc simple = needs_simple ? with_simple_facets(plc, format->most_corners) : Plc{};
+    const Plc& out = needs_simple ? simple : plc;
+    io::OutputFile& file = files.add(path);
+    if (extension == ".stl") (options.binary_stl ? io::write_binary_stl : io::write_stl)(out, file);
+    else if (extension == ".msh") io::write_msh_surface(out, options.msh_version, file);
+    else format->write(out, file);
+    return files.commit();
+}
+
+bool holds_mesh(const std::filesystem::path& path) {
+    const std::string extension = io::lower_case_extension(path);
+    if (extension == ".node" || extension == ".ele") return true;
+    if (extension == ".mesh") return io::has_medit_tetrahedra(io::read_source(path));
+    if (extension == ".msh") return !io::read_msh(io::read_source(path), true).tets.corners.empty();
+    if (extension == ".vtu") return !io::read_vtu(io::read_source(path), true).tets.corners.empty();
+    return false;
 }
 
 }  // namespace wellmesh

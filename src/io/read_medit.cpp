@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // MEDIT .mesh, text: keywords in any order, each with a count and rows of fixed width; 'End' or the end of the file closes it.
 // Keywords that concern neither the mesh nor its surface are passed over by their width; unknown ones are errors, because a file with
-// sections of unknown width cannot be read reliably. Tetrahedra keep the corner order of the file.
+// sections of unknown width cannot be read reliably. Tetrahedra keep the corner order of the file. As a complex, Edges are segments, references markers,
+// and Corners and RequiredVertices that nothing else uses are points; the other Required sections and Ridges name what is kept anyway.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -13,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "io/mixed_mesh.hpp"
 #include "io/number_parsing.hpp"
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
@@ -96,6 +99,10 @@ public:
         plc.facets.reserve(triangles_.corners.size() + quadrilaterals_.corners.size());
         add_facets(plc, triangles_);
         add_facets(plc, quadrilaterals_);
+        for (std::size_t i = 0; i < edges_.corners.size(); ++i) plc.segments.push_back({edges_.corners[i], edges_.references[i]});
+        if (!plc.segments.empty() || !is_oriented_closed_surface(plc.facets)) plc.fill = FillRule::bounded_cells;
+        add_required_vertices(plc);
+        plc.vertex_markers = vertex_references();
         normalise_zeros(plc.vertices);
         return plc;
     }
@@ -112,11 +119,44 @@ public:
         mesh.subface_facets = triangles_.references;
         mesh.subface_markers = std::move(triangles_.references);
         mesh.subsegments = std::move(edges_.corners);
-        mesh.subsegment_segments = std::move(edges_.references);
+        mesh.subsegment_segments = edges_.references;
+        mesh.subsegment_markers = std::move(edges_.references);
+        mesh.vertex_markers = vertex_references();
         return mesh;
     }
 
 private:
+    /// Empty if all are 0.
+    std::vector<std::int32_t> vertex_references() {
+        if (std::all_of(vertex_references_.begin(), vertex_references_.end(), [](std::int32_t r) { return r == 0; })) return {};
+        return std::move(vertex_references_);
+    }
+
+    /// Vertices of faces and edges are kept anyway; others that are required become points of the complex.
+    void add_required_vertices(Plc& plc) const {
+        std::vector<char> used(plc.vertices.size(), 0);
+        for (const PlcFacet& facet : plc.facets)
+            for (const std::uint32_t v : facet.polygons.front()) used[v] = 1;
+        for (const PlcSegment& segment : plc.segments)
+            for (const std::uint32_t v : segment.vertices) used[v] = 1;
+        for (const auto& [number, line] : required_vertices_) {
+            if (number < 1 || static_cast<std::uint64_t>(number) > plc.vertices.size())
+                fail_at_line(in_.source(), line, fmt::format("vertex {} does not exist; the file has {} vertices", number, plc.vertices.size()));
+            const auto v = static_cast<std::uint32_t>(number - 1);
+            if (std::exchange(used[v], 1) != 0) continue;
+            add_polygon(plc, {v}, 0);
+            plc.facet_lines.push_back(static_cast<std::uint32_t>(line));
+        }
+    }
+
+    void read_required_vertices() {
+        const std::size_t count = in_.count("the number of entries", 2);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::int64_t number = in_.integer("a vertex number");
+            required_vertices_.emplace_back(number, in_.line32());
+        }
+    }
+
     void read_section(std::string_view word) {
         if (word == "Dimension") {
             if (const std::int64_t dimension = in_.integer("the dimension"); dimension != 3)
@@ -126,7 +166,8 @@ private:
         }
         if (!dimension_known_) in_.fail_expected(word, "'Dimension' before the first section");
         if (word == "Vertices") return read_vertices();
-        if (word == "Edges") return read_elements(edges_, word, !as_surface_);
+        if (as_surface_ && (word == "Corners" || word == "RequiredVertices")) return read_required_vertices();
+        if (word == "Edges") return read_elements(edges_, word, true);
         if (word == "Triangles") return read_elements(triangles_, word, true);
         if (word == "Quadrilaterals") return read_elements(quadrilaterals_, word, true);
         if (word == "Tetrahedra") return read_elements(tets_, word, !as_surface_);
@@ -145,11 +186,12 @@ private:
         const std::size_t count = in_.count("the number of vertices", kLeastVertexBytes);
         if (count > kMostVertices) in_.fail("more vertices than 32-bit numbers hold");
         vertices_.reserve(count);
+        vertex_references_.reserve(count);
         if (as_surface_) vertex_lines_.reserve(count);
         for (std::size_t v = 0; v < count; ++v) {
             vertices_.push_back(read_point(in_, precision_));
             if (as_surface_) vertex_lines_.push_back(in_.line32());
-            (void)in_.integer32("a reference");
+            vertex_references_.push_back(in_.integer32("a reference"));
         }
     }
 
@@ -212,13 +254,22 @@ private:
     TextPrecision precision_;
     bool as_surface_, dimension_known_ = false, vertices_given_ = false;
     std::vector<Vec3> vertices_;
+    std::vector<std::int32_t> vertex_references_;
     std::vector<std::uint32_t> vertex_lines_;
+    std::vector<std::pair<std::int64_t, std::uint64_t>> required_vertices_;  // number and line
     Elements<2> edges_;
     Elements<3> triangles_;
     Elements<4> quadrilaterals_, tets_;
 };
 
 }  // namespace
+
+bool has_medit_tetrahedra(const SourceFile& source) {
+    TextScanner in(source, {});
+    for (std::string_view word = in.next(); !word.empty(); word = in.next())
+        if (word == "Tetrahedra") return in.integer("the number of elements") > 0;
+    return false;
+}
 
 Plc read_medit_surface(const SourceFile& source) {
     MeditReader reader(source, true);

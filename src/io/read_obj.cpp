@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "io/mixed_mesh.hpp"
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
 
@@ -33,9 +34,11 @@ public:
         for (std::string_view word = in_.next(); !word.empty(); word = in_.next()) read_statement(word);
         if (plc_.vertices.empty()) in_.fail("expected 'v' statements, but the file ends without any");
         check_forward_references();
-        if (groups_.size() <= 1) {
+        name_markers();
+        if (!resolve_generated_names(plc_) && groups_.size() <= 1) {
             for (PlcFacet& facet : plc_.facets) facet.marker = 0;
             for (PlcSegment& segment : plc_.segments) segment.marker = 0;
+            plc_.names = {};
         }
         plc_.first_number = 1;
         plc_.relative_rounding = precision_.relative_rounding();
@@ -117,10 +120,30 @@ private:
         if (!marker_known_) {
             std::string key;  // names hold no line end, so the key is unambiguous
             for (const std::string& name : names_) key += name + '\n';
-            marker_ = groups_.try_emplace(std::move(key), static_cast<std::int32_t>(groups_.size() + 1)).first->second;
+            const auto [at, is_new] = groups_.try_emplace(std::move(key), static_cast<std::int32_t>(groups_.size() + 1));
+            if (is_new) group_names_.push_back(names_);
+            marker_ = at->second;
             marker_known_ = true;
         }
         return marker_;
+    }
+
+    /// A combination is named after those of its parts (object, group, material) that differ somewhere in the file.
+    void name_markers() {
+        std::array<bool, 3> differs{groups_.size() == 1, groups_.size() == 1, groups_.size() == 1};
+        for (const auto& names : group_names_)
+            for (std::size_t k = 0; k < 3; ++k) differs[k] = differs[k] || names[k] != group_names_.front()[k];
+        std::array<std::vector<std::int32_t>, 3> used;  // dimension 1 and 2
+        for (const PlcSegment& segment : plc_.segments) used[1].push_back(segment.marker);
+        for (const PlcFacet& facet : plc_.facets) used[2].push_back(facet.marker);
+        for (std::size_t dimension = 1; dimension <= 2; ++dimension)
+            for (const std::int32_t marker : used[dimension]) {
+                const auto& names = group_names_[static_cast<std::size_t>(marker) - 1];
+                std::string name;
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (differs[k] && !names[k].empty()) name += (name.empty() ? "" : "/") + names[k];
+                if (!name.empty()) plc_.names.of_dimension[dimension].emplace(marker, std::move(name));
+            }
     }
 
     TextScanner in_;
@@ -130,6 +153,7 @@ private:
     std::optional<std::pair<std::uint32_t, std::uint64_t>> forward_;  // largest forward reference and its line
     std::array<std::string, 3> names_;                                // of the current object, group, material
     std::unordered_map<std::string, std::int32_t> groups_;            // only looked up
+    std::vector<std::array<std::string, 3>> group_names_;             // by marker - 1
     std::int32_t marker_ = 0;
     bool marker_known_ = false;
 };

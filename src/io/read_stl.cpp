@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "io/byte_order.hpp"
+#include "io/mixed_mesh.hpp"
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
 
@@ -75,11 +77,14 @@ public:
         std::int32_t solids = 0;
         for (std::string_view token = in_.next(); !token.empty(); token = in_.next()) {
             if (!is_word(token, "solid")) in_.fail_expected(token, solids == 0 ? "'solid'" : "'solid' or the end of the file");
-            in_.skip_line();  // its name, anything
+            const std::string_view name = in_.rest_of_line();  // anything
             read_solid(++solids);
+            if (!name.empty()) plc_.names.of_dimension[2].emplace(solids, name);
         }
-        if (solids == 1)
+        if (!resolve_generated_names(plc_) && solids == 1) {
             for (PlcFacet& facet : plc_.facets) facet.marker = 0;
+            plc_.names = {};
+        }
         plc_.relative_rounding = precision_.relative_rounding();
         return std::move(plc_);
     }

@@ -84,12 +84,14 @@ TetMesh read_tetgen_mesh(const std::filesystem::path& path) {
     if (!in.at_end()) in.fail_expected(in.next(), "nothing after the points");
     const NodeNumbering numbering(nodes);
     mesh.vertices = std::move(nodes.points);
+    mesh.vertex_markers = std::move(nodes.markers);
     mesh.relative_rounding = precision.relative_rounding();
     RowReader<4>(read_source(with_extension(path, ".ele")), numbering).read_tets(mesh.tets, mesh.tet_regions);
     const auto faces = with_extension(path, ".face"), edges = with_extension(path, ".edge");
     if (std::filesystem::exists(faces)) RowReader<3>(read_source(faces), numbering).read_markers(mesh.subfaces, mesh.subface_facets);
     if (std::filesystem::exists(edges)) RowReader<2>(read_source(edges), numbering).read_markers(mesh.subsegments, mesh.subsegment_segments);
     mesh.subface_markers = mesh.subface_facets;
+    mesh.subsegment_markers = mesh.subsegment_segments;
     return mesh;
 }
 

@@ -32,6 +32,8 @@ public:
     std::string_view rest_of_line();
     /// Moves to the end of this line.
     void skip_line();
+    /// Moves past `n` bytes that are no text (binary data within the file). @pre n <= bytes_left(). Line numbers mean nothing from then on.
+    void skip_bytes(std::size_t n) { cursor_ += n; }
     /// Whether only blanks and comments are left. Moves to the next token.
     bool at_end();
 

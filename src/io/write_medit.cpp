@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// MEDIT .mesh: Edges are the subsegments (reference: number of the input segment, from 1), Triangles the subfaces (input facet),
-// Tetrahedra the domain (region). Vertices on nothing are listed like all others; sections without entries are left out.
+// MEDIT .mesh: Edges are the subsegments, Triangles the subfaces, Tetrahedra the domain (reference: region). References of the former and of vertices are
+// numbers of the input's segments, facets and vertices, from 1 (0: not the input's), or their markers. Vertices on nothing are listed like all others; sections without entries are left out.
 #include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "io/writers.hpp"
 
@@ -31,21 +33,38 @@ void write_section(OutputFile& out, std::string_view keyword, const std::vector<
 
 }  // namespace
 
-void write_medit(const TetMesh& mesh, OutputFile& out) {
+void write_medit(const TetMesh& mesh, References references, const std::vector<std::uint32_t>& required, OutputFile& out) {
+    const bool markers = references == References::marker;
+    const auto vertex_reference = [&](std::size_t v) -> std::int64_t {
+        if (markers || mesh.vertex_carriers.empty()) return mesh.vertex_markers.empty() ? 0 : mesh.vertex_markers[v];
+        const VertexCarrier& carrier = mesh.vertex_carriers[v];
+        return carrier.kind == CarrierKind::input_vertex ? std::int64_t{carrier.id} + 1 : 0;
+    };
     out.text("MeshVersionFormatted 2\nDimension 3\nVertices\n");
     out.integer(static_cast<std::int64_t>(mesh.vertices.size()));
     out.character('\n');
-    for (const Vec3& p : mesh.vertices) {
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        const Vec3& p = mesh.vertices[v];
         out.real(p.x);
         out.character(' ');
         out.real(p.y);
         out.character(' ');
         out.real(p.z);
-        out.text(" 0\n");
+        out.character(' ');
+        out.integer(vertex_reference(v));
+        out.character('\n');
     }
-    write_section(out, "Edges", mesh.subsegments, mesh.subsegment_segments);
-    write_section(out, "Triangles", mesh.subfaces, mesh.subface_facets);
+    const std::vector<std::int32_t> unmarked(markers && mesh.subsegment_markers.empty() ? mesh.subsegments.size() : 0, 0);
+    write_section(out, "Edges", mesh.subsegments, !markers ? mesh.subsegment_segments : mesh.subsegment_markers.empty() ? unmarked : mesh.subsegment_markers);
+    write_section(out, "Triangles", mesh.subfaces, markers ? mesh.subface_markers : mesh.subface_facets);
     write_section(out, "Tetrahedra", mesh.tets, mesh.tet_regions);
+    if (!required.empty()) {
+        out.text(fmt::format("RequiredVertices\n{}\n", required.size()));
+        for (const std::uint32_t v : required) {
+            out.integer(std::int64_t{v} + 1);
+            out.character('\n');
+        }
+    }
     out.text("End\n");
 }
 

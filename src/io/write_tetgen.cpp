@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen's .node (weights, if there are any, as the attribute), .ele (region as the attribute), .face and .edge (boundary markers), counted
+// TetGen's .node (weights, if there are any, as the attribute, and vertex markers, if there are any), .ele (region as the attribute), .face and .edge (boundary markers), counted
 // from 1. All four are always written, so
 // that no file of an older mesh stays beside. The marker of a face is the input's marker of its facet; of an input without markers
-// (all zero), the facet's number. That of an edge is the segment's number.
+// (all zero), the facet's number. The same for edges and segments.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -37,7 +37,8 @@ void write_tetgen(const TetMesh& mesh, const std::filesystem::path& path, Output
     const auto add = [&](const char* extension) -> OutputFile& { return files.add(std::filesystem::path(path).replace_extension(extension)); };
     OutputFile& nodes = add(".node");
     nodes.integer(static_cast<std::int64_t>(mesh.vertices.size()));
-    nodes.text(mesh.weights.empty() ? " 3 0 0\n" : " 3 1 0\n");
+    nodes.text(mesh.weights.empty() ? " 3 0" : " 3 1");
+    nodes.text(mesh.vertex_markers.empty() ? " 0\n" : " 1\n");
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         nodes.integer(static_cast<std::int64_t>(v) + 1);
         for (const double coordinate : {mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z}) {
@@ -48,12 +49,16 @@ void write_tetgen(const TetMesh& mesh, const std::filesystem::path& path, Output
             nodes.character(' ');
             nodes.real(mesh.weights[v]);
         }
+        if (!mesh.vertex_markers.empty()) {
+            nodes.character(' ');
+            nodes.integer(mesh.vertex_markers[v]);
+        }
         nodes.character('\n');
     }
     write_rows(add(".ele"), " 4 1\n", mesh.tets, mesh.tet_regions);
-    const bool marked = std::any_of(mesh.subface_markers.begin(), mesh.subface_markers.end(), [](std::int32_t marker) { return marker != 0; });
-    write_rows(add(".face"), " 1\n", mesh.subfaces, marked ? mesh.subface_markers : mesh.subface_facets);
-    write_rows(add(".edge"), " 1\n", mesh.subsegments, mesh.subsegment_segments);
+    const auto any = [](const std::vector<std::int32_t>& markers) { return std::any_of(markers.begin(), markers.end(), [](std::int32_t m) { return m != 0; }); };
+    write_rows(add(".face"), " 1\n", mesh.subfaces, any(mesh.subface_markers) ? mesh.subface_markers : mesh.subface_facets);
+    write_rows(add(".edge"), " 1\n", mesh.subsegments, any(mesh.subsegment_markers) ? mesh.subsegment_markers : mesh.subsegment_segments);
 }
 
 }  // namespace wellmesh::io

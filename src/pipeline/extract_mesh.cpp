@@ -71,6 +71,7 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, InOutput&& in_outpu
         out.vertices.push_back(mesh.point(v));
         const VertexInfo& info = mesh.info(v);
         std::uint32_t id = info.carrier_id;
+        if (!plc.vertex_markers.empty()) out.vertex_markers.push_back(info.carrier == CarrierKind::input_vertex ? plc.vertex_markers[id] : 0);
         if (info.carrier == CarrierKind::input_vertex) id = plc.source_vertex[id];
         if (info.carrier == CarrierKind::region) id = static_cast<std::uint32_t>(plc.cells[id].region);
         out.vertex_carriers.push_back({info.carrier, id});
@@ -120,6 +121,7 @@ TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order) {
     for (const ListedEdge& e : edges) {
         out.subsegments.push_back(e.ends);
         out.subsegment_segments.push_back(static_cast<std::int32_t>(e.segment.value()) + 1);
+        out.subsegment_markers.push_back(plc.segments[e.segment.index()].marker);
     }
     return out;
 }

@@ -83,6 +83,7 @@ private:
         const ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_, guard_.checkpoint()); });
         require_room(valid.vertices.size());
         result_.statistics.coplanar_tolerance = valid.coplanar_tolerance;
+        result_.statistics.cells = valid.diagnosis.cells;
         note_defects(valid);
         if (options_.size.vertex_sizes && std::any_of(plc_.vertex_sizes.begin(), plc_.vertex_sizes.end(), [](double h) { return h > 0; }))
             result_.statistics.notes.emplace_back("the input states sizes at its vertices, which count");
@@ -178,6 +179,7 @@ private:
         if (!certified && only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
         std::vector<TetId> order;
         result_.mesh = extract_mesh(mesh, order);
+        result_.mesh.names = plc_.names;
         result_.exemptions = list_exemptions(mesh, order, refiner.exemptions(), options_);
         size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());
         if (verdict == RunGuard::Verdict::go_on && exudes && asks_for_shape(options_))

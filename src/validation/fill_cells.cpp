@@ -8,14 +8,16 @@
 #include <fmt/format.h>
 
 #include "core/vec3_math.hpp"
+#include "validation/box_tree.hpp"
+#include "validation/local_feature_size.hpp"
 
 namespace wellmesh {
 namespace {
 
 class CellFiller {
 public:
-    CellFiller(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, Report& report)
-        : input_(input), soup_(soup), map_(map), lines_(lines), report_(report), plc_(report.plc()), cells_(map.size()), is_hole_(map.size(), 0), has_seed_(map.size(), 0) {}
+    CellFiller(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, double touching, Report& report)
+        : input_(input), soup_(soup), map_(map), lines_(lines), touching_(touching), report_(report), plc_(report.plc()), cells_(map.size()), is_hole_(map.size(), 0), has_seed_(map.size(), 0) {}
 
     std::vector<ValidCell> run() {
         for (std::size_t c = 0; c < map_.size(); ++c) cells_[c].volume = map_.volume[c];
@@ -29,7 +31,8 @@ public:
     }
 
 private:
-    [[nodiscard]] std::optional<std::uint32_t> cell_at(const Vec3& p, const std::string& what);
+    [[nodiscard]] std::optional<std::uint32_t> touched_triangle(const Vec3& p) const;
+    [[nodiscard]] std::optional<std::uint32_t> cell_at(const Vec3& p, std::size_t number, const std::string& what);
     void place_hole(std::size_t h);
     void apply_fill_rule();
     [[nodiscard]] std::optional<std::vector<int>> winding_numbers() const;
@@ -41,23 +44,37 @@ private:
     const Soup& soup_;
     const CellMap& map_;
     const LineQuery& lines_;
+    double touching_;
     Report& report_;
     const Plc& plc_;
     std::vector<ValidCell> cells_;
     std::vector<char> is_hole_, has_seed_;
 };
 
+/// The first triangle within touching_ of p.
+std::optional<std::uint32_t> CellFiller::touched_triangle(const Vec3& p) const {
+    for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t) {
+        const auto corner = [&](std::size_t i) -> const Vec3& { return input_.points[soup_.triangles[t].v[i].index()]; };
+        Box box;
+        for (std::size_t i = 0; i < 3; ++i) box.add(corner(i));
+        const bool near = p.x >= box.low.x - touching_ && p.x <= box.high.x + touching_ && p.y >= box.low.y - touching_ && p.y <= box.high.y + touching_ &&
+                          p.z >= box.low.z - touching_ && p.z <= box.high.z + touching_;
+        if (near && distance_to_triangle(p, corner(0), corner(1), corner(2)) <= touching_) return t;
+    }
+    return std::nullopt;
+}
+
 /// The cell of a seed; nothing (reported) if the seed is unusable.
-std::optional<std::uint32_t> CellFiller::cell_at(const Vec3& p, const std::string& what) {
+std::optional<std::uint32_t> CellFiller::cell_at(const Vec3& p, std::size_t number, const std::string& what) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-        report_.add(DefectKind::non_finite_coordinate, Severity::error, {{EntityKind::region, 0, p}}, fmt::format("{} has a coordinate that is not finite", what));
+        report_.add(DefectKind::non_finite_coordinate, Severity::error, {{EntityKind::region, number, p}}, fmt::format("{} has a coordinate that is not finite", what));
         return std::nullopt;
     }
     const auto place = lines_.locate(p);
-    if (place.on) {
-        const std::uint32_t facet = input_.facets[soup_.triangles[*place.on].facet].source;
-        report_.add(DefectKind::seed_on_facet, Severity::error, {{EntityKind::region, 0, p}, report_.facet(facet, p)},
-                    fmt::format("{} at {} lies exactly on {}: move it into a cell", what, format_point(p), report_.name_facet(facet)));
+    if (const auto on = place.on ? place.on : touched_triangle(p)) {
+        const std::uint32_t facet = input_.facets[soup_.triangles[*on].facet].source;
+        report_.add(DefectKind::seed_on_facet, Severity::error, {{EntityKind::region, number, p}, report_.facet(facet, p)},
+                    fmt::format("{} at {} lies {} {}: move it into a cell", what, format_point(p), place.on ? "exactly on" : "within rounding on", report_.name_facet(facet)));
         return std::nullopt;
     }
     return place.sees ? map_.cell_of_side[*place.sees] : 0;
@@ -66,7 +83,7 @@ std::optional<std::uint32_t> CellFiller::cell_at(const Vec3& p, const std::strin
 void CellFiller::place_hole(std::size_t h) {
     const Vec3& p = plc_.hole_seeds[h];
     const std::string what = fmt::format("hole seed {}", h + 1);
-    const auto cell = cell_at(p, what);
+    const auto cell = cell_at(p, h + 1, what);
     if (!cell) return;
     if (*cell == 0)
         report_.add(DefectKind::seed_outside, Severity::warning, {{EntityKind::region, h + 1, p}},
@@ -124,7 +141,7 @@ void CellFiller::place_regions() {
     for (std::size_t r = 0; r < plc_.region_seeds.size(); ++r) {
         const RegionSeed& seed = plc_.region_seeds[r];
         const std::string what = fmt::format("region seed {}", r + 1);
-        const auto cell = cell_at(seed.point, what);
+        const auto cell = cell_at(seed.point, r + 1, what);
         if (!cell) continue;
         ValidCell& c = cells_[*cell];
         const ElementRef ref{EntityKind::region, r + 1, seed.point};
@@ -195,8 +212,8 @@ Vec3 CellFiller::point_inside(std::uint32_t cell) const {
 
 }  // namespace
 
-std::vector<ValidCell> fill_cells(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, Report& report) {
-    return CellFiller(input, soup, map, lines, report).run();
+std::vector<ValidCell> fill_cells(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, double touching, Report& report) {
+    return CellFiller(input, soup, map, lines, touching, report).run();
 }
 
 }  // namespace wellmesh

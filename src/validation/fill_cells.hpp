@@ -9,8 +9,8 @@
 namespace wellmesh {
 
 /// Applies the fill rule, hole seeds and region seeds, numbers the remaining filled cells with unused positive references, and finds a
-/// point inside each filled cell. Reports seeds that are outside, on a facet or in conflict, and domains without any filled cell.
+/// point inside each filled cell. A seed within `touching` of a facet lies on it: rounding would decide which cell it names. Reports seeds that are outside, on a facet or in conflict, and domains without any filled cell.
 /// Under the winding rule, facets that cannot be oriented consistently (a note) fill every bounded cell.
-[[nodiscard]] std::vector<ValidCell> fill_cells(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, Report& report);
+[[nodiscard]] std::vector<ValidCell> fill_cells(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, double touching, Report& report);
 
 }  // namespace wellmesh

@@ -32,11 +32,12 @@ struct ValidPlcBuilder {
     void find_segments();
     void find_facets();
     void set_triangles(std::uint32_t group, ValidFacet& facet);
-    void find_open_edges();
+    void find_open_edges(Severity severity);
     void attach_cells(const CellMap& map);
     void drop_outside(const LineQuery& lines, const CellMap& map);
     void keep_isolated_vertices(const LineQuery& lines, const CellMap& map);
     void compress_vertices();
+    void keep_vertex_markers(const std::vector<VertexId>& number);
     void summarise();
 
     const Plc& plc;
@@ -69,7 +70,7 @@ void ValidPlcBuilder::run() {
     pass(checkpoint);
     find_thin_features(input, soup, edges, groups, rounding, report);
     pass(checkpoint);
-    find_open_edges();
+    if (plc.fill == FillRule::nonzero_winding) find_open_edges(Severity::error);
     find_segments();
     find_facets();
     if (report.has_errors()) return;
@@ -77,7 +78,8 @@ void ValidPlcBuilder::run() {
     const LineQuery lines(input.points, soup.triangles);
     const CellMap map = find_cells(input.points, soup.triangles, edges, lines);
     pass(checkpoint);
-    out.cells = fill_cells(input, soup, map, lines, report);
+    out.cells = fill_cells(input, soup, map, lines, rounding.on_edge(), report);
+    if (out.cells.size() == 1) find_open_edges(Severity::warning);  // it encloses nothing: where is it open?
     attach_cells(map);
     if (!report.has_errors()) drop_outside(lines, map);
     keep_isolated_vertices(lines, map);
@@ -222,14 +224,14 @@ void ValidPlcBuilder::drop_outside(const LineQuery& lines, const CellMap& map) {
 }
 
 /// A surface file must be closed: an edge with one triangle is a hole in it. Facets of a .poly may dangle.
-void ValidPlcBuilder::find_open_edges() {
-    if (plc.fill != FillRule::nonzero_winding) return;
+void ValidPlcBuilder::find_open_edges(Severity severity) {
+    if (severity != Severity::error && report.count(DefectKind::open_edge, Severity::error) > 0) return;  // listed already
     for (std::size_t e = 0; e < edges.keys.size(); ++e) {
         if (edges.around(e).size() != 1) continue;
         const auto ends = edge_ends(edges.keys[e]);
         const std::uint32_t a = input.source_vertex[ends[0].index()], b = input.source_vertex[ends[1].index()];
         const std::uint32_t facet = input.facets[soup.triangles[edges.around(e)[0] / 3].facet].source;
-        report.add(DefectKind::open_edge, Severity::error, {report.vertex(a), report.vertex(b), report.facet(facet)},
+        report.add(DefectKind::open_edge, severity, {report.vertex(a), report.vertex(b), report.facet(facet)},
                    fmt::format("the edge from {} at {} to {} at {} bounds only {}: the surface is not closed", report.name_vertex(a),
                                format_point(input.points[ends[0].index()]), report.name_vertex(b), format_point(input.points[ends[1].index()]),
                                report.name_facet(facet)));
@@ -276,9 +278,9 @@ void ValidPlcBuilder::compress_vertices() {
         number[v] = VertexId{out.vertices.size()};
         out.vertices.push_back(input.points[v]);
         out.source_vertex.push_back(input.source_vertex[v]);
-        if (plc.vertex_markers.size() == plc.vertices.size()) out.vertex_markers.push_back(plc.vertex_markers[input.source_vertex[v]]);
         if (plc.vertex_sizes.size() == plc.vertices.size()) out.vertex_sizes.push_back(plc.vertex_sizes[input.source_vertex[v]]);
     }
+    keep_vertex_markers(number);
     const auto renumber = [&](VertexId& v) { v = number[v.index()]; };  // keeps the order, so sorted lists stay sorted
     for (ValidFacet& f : out.facets) {
         std::for_each(f.vertices.begin(), f.vertices.end(), renumber);
@@ -288,10 +290,25 @@ void ValidPlcBuilder::compress_vertices() {
     std::for_each(out.isolated_vertices.begin(), out.isolated_vertices.end(), renumber);
 }
 
+/// Of vertices at one place the first that has a marker gives it.
+void ValidPlcBuilder::keep_vertex_markers(const std::vector<VertexId>& number) {
+    if (plc.vertex_markers.size() != plc.vertices.size()) return;
+    out.vertex_markers.assign(out.vertices.size(), 0);
+    for (std::size_t v = 0; v < plc.vertices.size(); ++v) {
+        const VertexId clean = input.of_input[v];
+        if (!clean.valid() || !number[clean.index()].valid()) continue;
+        std::int32_t& marker = out.vertex_markers[number[clean.index()].index()];
+        if (marker == 0) marker = plc.vertex_markers[v];
+    }
+}
+
 void ValidPlcBuilder::summarise() {
     Diagnosis& d = out.diagnosis;
     d.defects = report.take();
-    for (const ValidCell& c : out.cells) d.cells.push_back({c.region, c.volume, c.inside, c.filled});
+    for (const ValidCell& c : out.cells) {
+        d.cells.push_back({c.region, c.volume, c.inside, c.filled});
+        if (const std::string* name = c.filled ? plc.names.find(3, c.region) : nullptr) d.cells.back().name = *name;
+    }
     d.vertices = out.vertices.empty() ? input.points.size() : out.vertices.size();
     d.segments = out.segments.size();
     d.facets = out.facets.size();

@@ -14,6 +14,7 @@
 
 #include "expect_error.hpp"
 #include "io/readers.hpp"
+#include "foreign_meshes.hpp"
 #include "sample_files.hpp"
 #include "sample_mesh.hpp"
 #include "wellmesh/io.hpp"
@@ -95,6 +96,14 @@ std::vector<Format> formats() {
     const testing::TemporaryDirectory directory;
     write_mesh(testing::sample_mesh(2), directory / "a.mesh");
     const std::string medit = testing::TemporaryDirectory::read(directory / "a.mesh");
+    const auto written = [&](const char* name, int version = 41) {
+        write_mesh(testing::sample_mesh(1), directory / name, {.msh_version = version});
+        return testing::TemporaryDirectory::read(directory / name);
+    };
+    const std::string vtu = written("b.vtu"), msh41 = written("b.msh"), msh22 = written("b.msh", 22);
+    const auto mesh = [](TetMesh (*reader)(const SourceFile&)) { return [reader](const SourceFile& source) { return consistent(reader(source)); }; };
+    write_plc(read_ply(source_of(testing::ply_bytes(quads, "ascii", true))), directory / "b.vtp");
+    const std::string vtp = testing::TemporaryDirectory::read(directory / "b.vtp");
     return {{"off", testing::off_text(quads), plc(read_off)},
             {"obj", testing::obj_text(quads), plc(read_obj)},
             {"stl text", testing::stl_text(triangles), plc(read_stl)},
@@ -106,6 +115,13 @@ std::vector<Format> formats() {
             {"smesh", testing::poly_text(quads, true), plc(read_smesh)},
             {"medit surface", testing::medit_text(quads), plc(read_medit_surface)},
             {"medit mesh", medit, [](const SourceFile& source) { return consistent(read_medit_mesh(source)); }},
+            {"msh 4.1", msh41, mesh(read_msh_mesh)},
+            {"msh 2.2", msh22, mesh(read_msh_mesh)},
+            {"msh binary", testing::msh_binary(testing::sample_mesh(1), true), mesh(read_msh_mesh)},
+            {"msh surface", msh22, plc(read_msh_surface)},
+            {"vtu", vtu, mesh(read_vtu_mesh)},
+            {"vtu compressed", testing::vtu_text(testing::sample_mesh(1), {.base64 = true, .compressed = true}), mesh(read_vtu_mesh)},
+            {"vtp", vtp, plc(read_vtp_surface)},
             {"xyz", "1 2 3\n4 5 6\n7.5 8 1e3\n", [](const SourceFile& source) { return consistent(read_xyz_points(source)); }},
             {"node", "3 3 1 1\n1 0 0 0 0.5 1\n2 1 0 0 0.5 1\n3 1 1 0 0.5 2\n",
              [](const SourceFile& source) { return consistent(read_node_points(source)); }}};

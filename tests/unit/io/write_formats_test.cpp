@@ -91,7 +91,8 @@ TEST(WriteMsh, NamesPhysicalGroups) {
         const std::string file = written(testing::sample_mesh(2), "a.msh", {.msh_version = version});
         EXPECT_TRUE(file.starts_with(version == 41 ? "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n" : "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"));
         for (const char* const name :
-             {"\n20\n1 1 \"segment_1\"", "\n1 12 \"segment_12\"\n", "\n2 6 \"facet_6\"\n", "\n3 1 \"region_-10\"\n", "\n3 2 \"region_20\"\n"})
+             {"\n16\n1 1 \"segment_1\"", "\n1 12 \"segment_12\"\n", "\n2 100 \"facet_marker_100\"\n", "\n2 101 \"facet_marker_-7\"\n",
+              "\n3 21 \"region_-10\"\n", "\n3 20 \"region_20\"\n"})
             EXPECT_NE(file.find(name), std::string::npos) << name;
     }
 }
@@ -114,7 +115,8 @@ TEST(WriteMsh, Version41IsConsistent) {
             ASSERT_TRUE(in) << dimension << " " << i;
             EXPECT_TRUE(box[0] <= box[3] && box[1] <= box[4] && box[2] <= box[5]);
             EXPECT_EQ(groups, 1);
-            EXPECT_EQ(group, tag);
+            if (dimension == 2) EXPECT_EQ(group, tag <= 2 ? 100 : 101);
+            else EXPECT_EQ(group, tag);
             EXPECT_EQ(bounds, 0);
             entities.emplace(dimension, tag);
         }
@@ -185,7 +187,7 @@ TEST(WriteMsh, Version22IsConsistent) {
 
 TEST(WriteFormats, EmptyAndPartialMeshesAreValid) {
     TetMesh mesh;
-    for (const char* const name : {"a.mesh", "a.vtu", "a.msh", "a.node"}) EXPECT_NO_THROW((void)written(mesh, name)) << name;
+    for (const char* const name : {"a.mesh", "a.vtu", "a.msh", "a.inp", "a.node"}) EXPECT_NO_THROW((void)written(mesh, name)) << name;
     mesh = testing::sample_mesh(1);
     mesh.vertices.push_back({9, 9, 9});  // on nothing
     std::istringstream in = section(written(mesh, "a.msh"), "Nodes");
@@ -196,7 +198,7 @@ TEST(WriteFormats, EmptyAndPartialMeshesAreValid) {
 
 TEST(WriteFormats, BytesDependOnTheMeshAlone) {
     const TetMesh mesh = testing::sample_mesh(2);
-    for (const char* const name : {"a.mesh", "a.vtu", "a.msh", "a.node"}) {
+    for (const char* const name : {"a.mesh", "a.vtu", "a.msh", "a.inp", "a.node"}) {
         const std::string plain = written(mesh, name);
         const bool german = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
         EXPECT_EQ(written(mesh, name), plain) << name << (german ? " in a German locale" : "");
@@ -226,7 +228,7 @@ TEST(WriteFormats, RefusesMeshesThatContradictThemselves) {
     plc.facets.resize(1);
     plc.facets[0].polygons = {{0, 1, 2}};
     expect_error(ErrorCode::bad_input, {"vertex 1"}, [&] { write_plc(plc, directory / "a.poly"); });
-    expect_error(ErrorCode::cannot_write, {".poly"}, [&] { write_plc(plc, directory / "a.off"); });
+    expect_error(ErrorCode::cannot_write, {".poly"}, [&] { write_plc(plc, directory / "a.xyz"); });
     EXPECT_TRUE(directory.files().empty());
 }
 
