@@ -3,7 +3,9 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <fmt/format.h>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "exit_status.hpp"
@@ -12,19 +14,29 @@
 #include "render_report.hpp"
 #include "wellmesh/diagnosis.hpp"
 #include "wellmesh/io.hpp"
+#include "wellmesh/repair.hpp"
 
 namespace wellmesh::cli {
 
 namespace {
 
 struct DoctorCommand {
-    std::string input, json;
+    std::string input, json, repaired;
+    std::optional<double> tolerance;
     MeshOptions options;
 };
 
 int run(const DoctorCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.options);
     require_report(arguments.json, {arguments.input});
+    if (!arguments.repaired.empty()) {
+        RepairOptions options;
+        options.tolerance = arguments.tolerance;
+        RepairResult r = repair(read_plc(arguments.input), options);
+        write_plc(r.plc, arguments.repaired);
+        fmt::print("{}\nrounds {}\n{}", r.summary, r.rounds, render_diagnosis(r.diagnosis));
+        return r.diagnosis.has_errors() ? kBadInput : kGoalsMet;
+    }
     const Diagnosis diagnosis = diagnose(read_plc(arguments.input), arguments.options);
     const int status = diagnosis.has_errors() ? kBadInput : kGoalsMet;
     if (!arguments.json.empty()) {
@@ -44,6 +56,8 @@ void add_doctor_command(CLI::App& program, Command& selected) {
     CLI::App& command = *program.add_subcommand("doctor", "list everything that is wrong with an input");
     auto arguments = std::make_shared<DoctorCommand>();
     command.add_option("INPUT", arguments->input, "domain: .poly .smesh .off .stl .obj .ply .mesh")->required()->type_name("");
+    command.add_option("--repair", arguments->repaired, "write a repaired copy");
+    command.add_option("--tolerance", arguments->tolerance, "join what is closer, input units");
     add_coplanar_tolerance_flag(command, arguments->options);
     add_json_flag(command, arguments->json);
     command.callback([&selected, arguments] { selected = [arguments](Interrupt& interrupt) { return run(*arguments, interrupt); }; });
