@@ -26,29 +26,24 @@ Vec3 projection_axis(const Vec3& normal) {
     return {std::copysign(1.0, normal.x), 0, 0};
 }
 
-/// Flips diagonals between triangles with a common circumcircle until each touches the lowest vertex of its four.
-class TieBreaker {
+/// Last touches to a triangulation. Triangles with a corner within reach of the opposite edge are flipped away: small and near a short edge, such a
+/// needle may be Delaunay, and would be found to touch itself. Then diagonals between triangles with a common circumcircle are flipped until each
+/// touches the lowest vertex of its four.
+class Flipper {
 public:
-    TieBreaker(std::vector<Corners>& triangles, const std::vector<Edge>& lines, std::span<const Vec3> points, const PlaneProjection& projection)
-        : triangles_(triangles), points_(points), projection_(projection) {
+    Flipper(std::vector<Corners>& triangles, const std::vector<Edge>& lines, std::span<const Vec3> points, const PlaneProjection& projection, double reach)
+        : triangles_(triangles), points_(points), projection_(projection), reach_(reach) {
         for (const Edge& e : lines) sides_[edge_key(VertexId{e[0]}, VertexId{e[1]})].fixed = true;
         for (std::uint32_t t = 0; t < triangles.size(); ++t)
             for (std::size_t i = 0; i < 3; ++i) at(t, i).add(t);
     }
 
     void run() {
-        // every flip takes an edge to a lower vertex of its circle, so this ends; the cap is for circles that rounding makes inconsistent
-        const std::size_t most = 16 * triangles_.size() + 16;
-        std::size_t flips = 0;
-        for (bool any = true; any && flips < most;) {
-            any = false;
-            for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-                for (std::size_t i = 0; i < 3; ++i)
-                    if (flip(t, i)) {
-                        any = true;
-                        ++flips;
-                    }
-        }
+        flip_all([&](const Quad& q) { return is_needle(q.a, q.b, q.c) && !is_needle(q.c, q.d, q.a) && !is_needle(q.c, q.d, q.b); });
+        // every flip takes an edge to a lower vertex of its circle
+        flip_all([&](const Quad& q) {
+            return std::min(q.c, q.d) < std::min(q.a, q.b) && on_one_circle({q.a, q.b, q.c, q.d}) && !is_needle(q.c, q.d, q.a) && !is_needle(q.c, q.d, q.b);
+        });
     }
 
 private:
@@ -83,14 +78,38 @@ private:
         return std::abs(sum) <= kTie * terms;
     }
 
-    bool flip(std::uint32_t t, std::size_t i) {
+    /// Triangles (a, b, c) and (b, a, d).
+    struct Quad {
+        std::uint32_t a = 0, b = 0, c = 0, d = 0;
+    };
+    [[nodiscard]] bool is_needle(std::uint32_t a, std::uint32_t b, std::uint32_t apex) const {
+        return distance_to_segment(points_[apex], points_[a], points_[b]) <= reach_;
+    }
+
+    template <class Wanted>
+    void flip_all(Wanted&& wanted) {
+        const std::size_t most = 16 * triangles_.size() + 16;  // in case that rounding makes circles contradict each other
+        std::size_t flips = 0;
+        for (bool any = true; any && flips < most;) {
+            any = false;
+            for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+                for (std::size_t i = 0; i < 3; ++i)
+                    if (flip(t, i, wanted)) {
+                        any = true;
+                        ++flips;
+                    }
+        }
+    }
+
+    template <class Wanted>
+    bool flip(std::uint32_t t, std::size_t i, Wanted&& wanted) {
         const Sides& between = at(t, i);
         if (between.fixed || between.triangle[0] == kNone || between.triangle[1] == kNone) return false;
         const std::uint32_t s = between.triangle[0] == t ? between.triangle[1] : between.triangle[0];
         const std::uint32_t a = triangles_[t][i], b = triangles_[t][(i + 1) % 3], c = triangles_[t][(i + 2) % 3];
         const Corners& other = triangles_[s];
         const std::uint32_t d = other[0] != a && other[0] != b ? other[0] : other[1] != a && other[1] != b ? other[1] : other[2];
-        if (std::min(c, d) > std::min(a, b) || !on_one_circle({a, b, c, d})) return false;
+        if (!wanted(Quad{a, b, c, d})) return false;
         if (orient2d(flat(c), flat(a), flat(d)) != Sign::positive || orient2d(flat(d), flat(b), flat(c)) != Sign::positive) return false;
         sides_.erase(edge_key(VertexId{a}, VertexId{b}));
         triangles_[t] = {c, a, d};
@@ -106,6 +125,7 @@ private:
     std::vector<Corners>& triangles_;
     std::span<const Vec3> points_;
     const PlaneProjection& projection_;
+    const double reach_;
     std::unordered_map<EdgeKey, Sides> sides_;
 };
 
@@ -176,7 +196,7 @@ CutResult cut(CutTask task, VertexPool& pool) {
             again = true;
         }
         if (again) continue;
-        TieBreaker(flat.triangles, flat.constraints, points, projection).run();
+        Flipper(flat.triangles, flat.constraints, points, projection, pool.reach()).run();
         for (const auto& t : flat.triangles) result.triangles.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
         for (const Edge& e : flat.constraints) result.lines.push_back({ids[e[0]], ids[e[1]]});
         for (const auto& pair : flat.coincident) result.stacked.push_back({ids[pair[0]], ids[pair[1]]});

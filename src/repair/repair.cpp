@@ -92,7 +92,7 @@ RepairResult repair(const Plc& plc, const RepairOptions& options, const std::sto
     if (stated.pieces.triangles.empty() && stated.pieces.wires.empty())
         throw MeshError(ErrorCode::bad_input, Stage::validate, "nothing to repair: no facet and no segment is usable");
     if (plc.fill == FillRule::nonzero_winding) orient_consistently(stated);
-    const Resolution resolution = resolve(stated, stop);
+    const Resolution resolution = resolve(stated, least_repair_tolerance(plc) / 8, stop);
     result.resolved = resolution.complete;
     result.rounds = resolution.rounds;
     if (result.resolved && plc.fill == FillRule::nonzero_winding) drop_idle_pieces(stated.pieces, options.drop_inner_facets);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <map>
+#include <cstdio>
+#include <cstdlib>
 
 #include "core/vec3_math.hpp"
 #include "repair/cut_triangle.hpp"
@@ -82,9 +84,18 @@ void Round::add(const Piece& piece, const std::vector<Vertex>& inside, const std
         task.points = inside;
         const Vec3& a = pieces_.pool[piece.v[0]];
         task.normal = cross(pieces_.pool[piece.v[1]] - a, pieces_.pool[piece.v[2]] - a);
-        result = cut(std::move(task), pieces_.pool);
+        result = cut(task, pieces_.pool);
     }
     if (result.triangles.empty()) ++pieces_.actions.degenerate_dropped;
+    if (std::getenv("DBG2")) {
+        std::fprintf(stderr, "DBG cut %u %u %u:", piece.v[0], piece.v[1], piece.v[2]);
+        for (auto& e : task.border) std::fprintf(stderr, " b%u-%u", e[0], e[1]);
+        for (auto& e : lines) std::fprintf(stderr, " l%u-%u", e[0], e[1]);
+        for (auto& e : result.triangles) std::fprintf(stderr, " [%u %u %u]", e[0], e[1], e[2]);
+        for (auto& e : result.stacked) std::fprintf(stderr, " s%u-%u", e[0], e[1]);
+        std::fprintf(stderr, "\n");
+        for (auto v : piece.v) std::fprintf(stderr, "DBG    %u %.17g %.17g %.17g\n", v, pieces_.pool[v].x, pieces_.pool[v].y, pieces_.pool[v].z);
+    }
     for (const auto& [kept, gone] : result.stacked) aliases_.add(kept, gone);
     for (const auto& v : result.triangles) pieces_.triangles.push_back({v, piece.source, piece.winding, true});
 }
@@ -165,19 +176,35 @@ void merge_copies(Pieces& pieces) {
                        pieces.wires.end());
 }
 
-Resolution resolve(StatedPieces& stated, const std::stop_token& stop) {
+Resolution resolve(StatedPieces& stated, double least_reach, const std::stop_token& stop) {
     constexpr unsigned kMostRounds = 60;  // inputs with thousands of intersections took five to ten
+    // What lies closer than the tolerance may have no triangulation without needles lower than it, and joining one makes the next. So after some rounds
+    // the reach shrinks, to what merely keeps new vertices apart from contacts of a few ulp.
+    constexpr unsigned kFullRounds = 3;
     Pieces& pieces = stated.pieces;
     Resolution result;
     merge_copies(pieces);
     while (result.rounds < kMostRounds) {
         if (stop.stop_requested()) throw MeshError(ErrorCode::cancelled, Stage::validate, "interrupted while repairing");
         ++result.rounds;
+        if (result.rounds > kFullRounds) pieces.pool.shrink_reach(std::max(least_reach, 0.5 * pieces.pool.reach()));
         const std::uint32_t vertices = pieces.pool.size();
         const Contacts contacts = find_contacts(pieces);
         if (contacts.empty()) {
             result.complete = true;
             break;
+        }
+        if (std::getenv("DBG")) {
+            std::size_t in = 0, li = 0;
+            for (auto& x : contacts.inside) in += x.size();
+            for (auto& x : contacts.lines) li += x.size();
+            std::fprintf(stderr, "DBG round %u tris %zu wires %zu verts %u on_edge %zu inside %zu lines %zu\n", result.rounds, pieces.triangles.size(), pieces.wires.size(), pieces.pool.size(), contacts.on_edge.size(), in, li);
+            if (result.rounds > 50) {
+                for (auto& [k, l] : contacts.on_edge) { auto e = edge_ends(k); std::fprintf(stderr, "DBG  edge %u %u (len %g):", e[0].value(), e[1].value(), distance(pieces.pool[e[0].value()], pieces.pool[e[1].value()])); for (auto v : l) std::fprintf(stderr, " %u", v); std::fprintf(stderr, "\n");
+                  for (auto& t : pieces.triangles) { int n = 0; for (auto v : t.v) n += v == e[0].value() || v == e[1].value(); if (n == 2) std::fprintf(stderr, "DBG      tri %u %u %u fresh %d w %d\n", t.v[0], t.v[1], t.v[2], t.fresh, t.winding); } }
+                for (std::size_t t = 0; t < contacts.inside.size(); ++t) for (auto v : contacts.inside[t]) std::fprintf(stderr, "DBG  tri %u %u %u has %u\n", pieces.triangles[t].v[0], pieces.triangles[t].v[1], pieces.triangles[t].v[2], v);
+                for (std::size_t t = 0; t < contacts.inside.size(); ++t) for (auto v : contacts.lines[t]) std::fprintf(stderr, "DBG  tri %u %u %u line %u %u\n", pieces.triangles[t].v[0], pieces.triangles[t].v[1], pieces.triangles[t].v[2], v[0], v[1]);
+            }
         }
         Round(stated, contacts).run();
         pieces.first_fresh_vertex = vertices;

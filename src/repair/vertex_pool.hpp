@@ -21,6 +21,8 @@ public:
     [[nodiscard]] const Vec3& operator[](std::uint32_t v) const { return points_[v]; }
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
     [[nodiscard]] double reach() const { return reach_; }
+    /// From now on; vertices that exist stay as they are. @pre not more than before
+    void shrink_reach(double reach) { reach_ = reach; }
 
 private:
     struct Cell {
