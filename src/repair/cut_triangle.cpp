@@ -6,9 +6,9 @@
 #include <unordered_map>
 
 #include "core/vec3_math.hpp"
+#include "repair/pieces.hpp"
 #include "validation/closest_points.hpp"
 #include "validation/triangulate_facet.hpp"
-#include "validation/working_complex.hpp"
 
 namespace wellmesh {
 namespace {
@@ -33,7 +33,7 @@ class Flipper {
 public:
     Flipper(std::vector<Corners>& triangles, const std::vector<Edge>& lines, std::span<const Vec3> points, const PlaneProjection& projection, double reach)
         : triangles_(triangles), points_(points), projection_(projection), reach_(reach) {
-        for (const Edge& e : lines) sides_[edge_key(VertexId{e[0]}, VertexId{e[1]})].fixed = true;
+        for (const Edge& e : lines) sides_[piece_edge(e[0], e[1])].fixed = true;
         for (std::uint32_t t = 0; t < triangles.size(); ++t)
             for (std::size_t i = 0; i < 3; ++i) at(t, i).add(t);
     }
@@ -54,7 +54,7 @@ private:
         void add(std::uint32_t t) { triangle[triangle[0] == kNone ? 0 : 1] = t; }
         void replace(std::uint32_t from, std::uint32_t to) { triangle[triangle[0] == from ? 0 : 1] = to; }
     };
-    Sides& at(std::uint32_t t, std::size_t i) { return sides_[edge_key(VertexId{triangles_[t][i]}, VertexId{triangles_[t][(i + 1) % 3]})]; }
+    Sides& at(std::uint32_t t, std::size_t i) { return sides_[piece_edge(triangles_[t][i], triangles_[t][(i + 1) % 3])]; }
     std::array<double, 2> flat(std::uint32_t v) const { return projection_(points_[v]); }
 
     /// Do the four lie on one circle, as far as rounding can tell? The determinant of the lifted differences from the first, against its terms.
@@ -111,12 +111,12 @@ private:
         const std::uint32_t d = other[0] != a && other[0] != b ? other[0] : other[1] != a && other[1] != b ? other[1] : other[2];
         if (!wanted(Quad{a, b, c, d})) return false;
         if (orient2d(flat(c), flat(a), flat(d)) != Sign::positive || orient2d(flat(d), flat(b), flat(c)) != Sign::positive) return false;
-        sides_.erase(edge_key(VertexId{a}, VertexId{b}));
+        sides_.erase(piece_edge(a, b));
         triangles_[t] = {c, a, d};
         triangles_[s] = {d, b, c};
-        sides_[edge_key(VertexId{a}, VertexId{d})].replace(s, t);
-        sides_[edge_key(VertexId{b}, VertexId{c})].replace(t, s);
-        Sides& across = sides_[edge_key(VertexId{c}, VertexId{d})];
+        sides_[piece_edge(a, d)].replace(s, t);
+        sides_[piece_edge(b, c)].replace(t, s);
+        Sides& across = sides_[piece_edge(c, d)];
         across.add(t);
         across.add(s);
         return true;
@@ -129,16 +129,144 @@ private:
     std::unordered_map<EdgeKey, Sides> sides_;
 };
 
-/// Replaces an edge in a list by the two parts at x; an end at x leaves it as it is.
-void split(std::vector<Edge>& edges, const Edge& e, std::uint32_t x) {
-    if (x == e[0] || x == e[1]) return;
-    const std::size_t n = edges.size();
-    for (std::size_t i = 0; i < n; ++i)
-        if (std::minmax(edges[i][0], edges[i][1]) == std::minmax(e[0], e[1])) {
-            edges.push_back({x, edges[i][1]});
-            edges[i][1] = x;
+/// The lines of a task while they cut each other into pieces.
+class LineArrangement {
+public:
+    LineArrangement(CutTask task, VertexPool& pool, TriplePoints& triples) : task_(std::move(task)), pool_(pool), triples_(triples) {}
+
+    CutResult run() {
+        constexpr std::size_t kMostRounds = 1000;  // each adds a vertex where lines cross; what is left over then is found again later
+        const PlaneProjection projection(projection_axis(task_.normal));
+        for (std::size_t round = 0;; ++round) {
+            std::vector<Edge> edges = number_vertices();
+            FacetTriangulation flat = triangulate_facet(points_, projection, edges, task_.holes, 0.5 * pool_.reach());
+            for (const auto& s : flat.splits) split({ids_[s.edge[0]], ids_[s.edge[1]]}, ids_[s.inside]);
+            if (round < kMostRounds && !flat.crossings.empty()) {
+                for (const auto& [e, f] : flat.crossings) cross_at({ids_[e[0]], ids_[e[1]]}, {ids_[f[0]], ids_[f[1]]});
+                continue;
+            }
+            Flipper(flat.triangles, flat.constraints, points_, projection, pool_.reach()).run();
+            for (const auto& t : flat.triangles) result_.triangles.push_back({ids_[t[0]], ids_[t[1]], ids_[t[2]]});
+            if (task_.only_border_encloses) keep_what_border_encloses();
+            for (const Edge& e : flat.constraints) result_.lines.push_back({ids_[e[0]], ids_[e[1]]});
+            for (const auto& pair : flat.coincident) result_.stacked.push_back({ids_[pair[0]], ids_[pair[1]]});
+            return std::move(result_);
         }
-}
+    }
+
+private:
+    /// Collects all vertices; the lines in their numbers.
+    std::vector<Edge> number_vertices() {
+        std::vector<Edge> edges = task_.border;
+        for (const CutLine& line : task_.lines) edges.push_back(line.ends);
+        ids_ = task_.points;
+        for (const Edge& e : edges) ids_.insert(ids_.end(), e.begin(), e.end());
+        std::sort(ids_.begin(), ids_.end());
+        ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
+        points_.clear();
+        for (const std::uint32_t v : ids_) points_.push_back(pool_[v]);
+        const auto local = [&](std::uint32_t v) { return static_cast<std::uint32_t>(std::lower_bound(ids_.begin(), ids_.end(), v) - ids_.begin()); };
+        for (Edge& e : edges) e = {local(e[0]), local(e[1])};
+        return edges;
+    }
+
+    /// The others do lie between lines, but outside: a way to the outside crosses the border an even number of times.
+    void keep_what_border_encloses() {
+        std::unordered_map<EdgeKey, bool> border;
+        for (const Edge& e : task_.border) {
+            bool& odd = border[piece_edge(e[0], e[1])];
+            odd = !odd;
+        }
+        const auto crosses_border = [&](EdgeKey key) {
+            const auto found = border.find(key);
+            return found != border.end() && found->second;
+        };
+        std::unordered_map<EdgeKey, std::array<std::uint32_t, 2>> sides;
+        const auto key_of = [&](std::uint32_t t, std::size_t i) { return piece_edge(result_.triangles[t][i], result_.triangles[t][(i + 1) % 3]); };
+        constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
+        for (std::uint32_t t = 0; t < result_.triangles.size(); ++t)
+            for (std::size_t i = 0; i < 3; ++i) {
+                auto& pair = sides.try_emplace(key_of(t, i), std::array{kNone, kNone}).first->second;
+                pair[pair[0] == kNone ? 0 : 1] = t;
+            }
+        constexpr char kUnknown = 2;
+        std::vector<char> inside(result_.triangles.size(), kUnknown);
+        std::vector<std::uint32_t> todo;
+        const auto reach = [&](std::uint32_t t, bool is_inside) {
+            if (inside[t] != kUnknown) return;
+            inside[t] = is_inside ? 1 : 0;
+            todo.push_back(t);
+        };
+        for (std::uint32_t start = 0; start < inside.size(); ++start) {
+            for (std::size_t i = 0; i < 3; ++i)
+                if (sides.at(key_of(start, i))[1] == kNone) reach(start, crosses_border(key_of(start, i)));
+            while (!todo.empty()) {
+                const std::uint32_t t = todo.back();
+                todo.pop_back();
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const auto& pair = sides.at(key_of(t, i));
+                    const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];
+                    if (other != kNone) reach(other, (inside[t] != 0) != crosses_border(key_of(t, i)));
+                }
+            }
+        }
+        std::size_t kept = 0;
+        for (std::uint32_t t = 0; t < inside.size(); ++t)
+            if (inside[t] == 1) result_.triangles[kept++] = result_.triangles[t];
+        result_.triangles.resize(kept);
+    }
+
+    static bool same(const Edge& e, const Edge& f) { return (e[0] == f[0] && e[1] == f[1]) || (e[0] == f[1] && e[1] == f[0]); }
+
+    /// Replaces an edge by two; nothing to do if x is one of its ends.
+    void split(const Edge& e, std::uint32_t x) {
+        if (x == e[0] || x == e[1]) return;
+        bool any = false;
+        for (std::size_t i = 0, n = task_.border.size(); i < n; ++i)
+            if (same(task_.border[i], e)) {
+                any = true;
+                task_.border.push_back({x, task_.border[i][1]});
+                task_.border[i][1] = x;
+            }
+        for (std::size_t i = 0, n = task_.lines.size(); i < n; ++i)
+            if (same(task_.lines[i].ends, e)) {
+                any = true;
+                task_.lines.push_back({{x, task_.lines[i].ends[1]}, task_.lines[i].with});
+                task_.lines[i].ends[1] = x;
+            }
+        if (any) result_.splits.push_back({e, x});
+    }
+
+    void cross_at(const Edge& e, const Edge& f) {
+        const auto line_of = [&](const Edge& x) {
+            return std::find_if(task_.lines.begin(), task_.lines.end(), [&](const CutLine& line) { return same(line.ends, x); });
+        };
+        const auto first = line_of(e), second = line_of(f);
+        const auto compute = [&] {
+            const ClosestPair closest = closest_between({pool_[e[0]], pool_[e[1]]}, {pool_[f[0]], pool_[f[1]]});
+            return pool_.find_or_add(closest.on_first + 0.5 * (closest.on_second - closest.on_first));
+        };
+        std::uint32_t x = 0;
+        if (first != task_.lines.end() && second != task_.lines.end() && first->with != second->with) {
+            std::array<std::uint32_t, 3> key{task_.self, first->with, second->with};
+            std::sort(key.begin(), key.end());
+            const auto known = triples_.find(key);
+            x = known != triples_.end() ? known->second : compute();
+            triples_.try_emplace(key, x);
+        } else {
+            x = compute();
+        }
+        split(e, x);
+        split(f, x);
+    }
+
+    CutTask task_;
+    VertexPool& pool_;
+    TriplePoints& triples_;
+    CutResult result_;
+    std::vector<std::uint32_t> ids_;
+    std::vector<Vec3> points_;
+};
 
 }  // namespace
 
@@ -167,41 +295,6 @@ std::vector<Edge> border_of(std::vector<std::uint32_t> loop) {
     return kept;
 }
 
-CutResult cut(CutTask task, VertexPool& pool) {
-    constexpr std::size_t kMostRounds = 1000;  // each adds a vertex where lines cross; what is left over then is found again later
-    const PlaneProjection projection(projection_axis(task.normal));
-    CutResult result;
-    for (std::size_t round = 0;; ++round) {
-        std::vector<std::uint32_t> ids = task.points;
-        std::vector<Edge> edges = task.border;
-        edges.insert(edges.end(), task.lines.begin(), task.lines.end());
-        for (const Edge& e : edges) ids.insert(ids.end(), e.begin(), e.end());
-        std::sort(ids.begin(), ids.end());
-        ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-        std::vector<Vec3> points;
-        for (const std::uint32_t v : ids) points.push_back(pool[v]);
-        const auto local = [&](std::uint32_t v) { return static_cast<std::uint32_t>(std::lower_bound(ids.begin(), ids.end(), v) - ids.begin()); };
-        for (Edge& e : edges) e = {local(e[0]), local(e[1])};
-        FacetTriangulation flat = triangulate_facet(points, projection, edges, task.holes, 0.5 * pool.reach());
-        bool again = false;
-        for (const auto& [e, f] : round < kMostRounds ? flat.crossings : std::vector<std::array<Edge, 2>>{}) {
-            const Edge here{ids[e[0]], ids[e[1]]}, there{ids[f[0]], ids[f[1]]};
-            const ClosestPair closest = closest_between({pool[here[0]], pool[here[1]]}, {pool[there[0]], pool[there[1]]});
-            const std::uint32_t x = pool.find_or_add(closest.on_first + 0.5 * (closest.on_second - closest.on_first));
-            // triangulate_facet() may have split the lines stated into these parts: both ends and splits are stated, too, from now on
-            for (auto* list : {&task.border, &task.lines})
-                for (const auto& s : flat.splits) split(*list, {ids[s.edge[0]], ids[s.edge[1]]}, ids[s.inside]);
-            for (auto* list : {&task.border, &task.lines})
-                for (const Edge& one : {here, there}) split(*list, one, x);
-            again = true;
-        }
-        if (again) continue;
-        Flipper(flat.triangles, flat.constraints, points, projection, pool.reach()).run();
-        for (const auto& t : flat.triangles) result.triangles.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
-        for (const Edge& e : flat.constraints) result.lines.push_back({ids[e[0]], ids[e[1]]});
-        for (const auto& pair : flat.coincident) result.stacked.push_back({ids[pair[0]], ids[pair[1]]});
-        return result;
-    }
-}
+CutResult cut(CutTask task, VertexPool& pool, TriplePoints& triples) { return LineArrangement(std::move(task), pool, triples).run(); }
 
 }  // namespace wellmesh

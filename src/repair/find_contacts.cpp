@@ -73,7 +73,7 @@ struct Edges {
 
 class ContactFinder {
 public:
-    explicit ContactFinder(Pieces& pieces) : pieces_(pieces), pool_(pieces.pool), reach_(pieces.pool.reach()) {
+    ContactFinder(Pieces& pieces, const EdgeSplits& splits) : pieces_(pieces), splits_(splits), pool_(pieces.pool), reach_(pieces.pool.reach()) {
         found_.inside.resize(pieces.triangles.size());
         found_.lines.resize(pieces.triangles.size());
         collect_edges();
@@ -86,6 +86,7 @@ public:
             vertex_to_edges(v);
             vertex_to_triangles(v);
         }
+        for (std::uint32_t e = 0; e < edges_.keys.size(); ++e) follow_split(e);
         for (std::uint32_t e = 0; e < edges_.keys.size(); ++e) edge_to_edges(e);
         for (std::uint32_t e = 0; e < edges_.keys.size(); ++e) edge_to_triangles(e);
         sort_lists();
@@ -107,6 +108,7 @@ private:
     void collect_vertices();
     void make_trees();
     void vertex_to_edges(Vertex v);
+    void follow_split(std::uint32_t e);
     void vertex_to_triangles(Vertex v);
     void edge_to_edges(std::uint32_t e);
     void edge_to_triangles(std::uint32_t e);
@@ -127,6 +129,10 @@ private:
             if (distance_to_segment(p, q[i], q[(i + 1) % 3]) <= reach_) return true;
         return false;
     }
+    [[nodiscard]] bool is_needle(Vertex v, std::uint32_t e) const {
+        const auto at_edge = edges_.carriers.at(e);
+        return std::any_of(at_edge.begin(), at_edge.end(), [&](Carrier c) { return is_triangle(c) && std::find(corners(c).begin(), corners(c).end(), v) != corners(c).end(); });
+    }
     void put_on_edge(Vertex v, std::uint32_t e) {
         if (v == ends(e)[0] || v == ends(e)[1]) return;
         found_.is_empty = false;
@@ -144,6 +150,7 @@ private:
     }
 
     Pieces& pieces_;
+    const EdgeSplits& splits_;
     VertexPool& pool_;
     const double reach_;
     Edges edges_;
@@ -210,7 +217,10 @@ void ContactFinder::vertex_to_edges(Vertex v) {
     around = around.grown(reach_);
     edge_trees_->query(is_fresh(v), [&](const Box& b) { return b.meets(around); }, [&](std::uint32_t e) {
         const auto [a, b] = ends(e);
-        if (a == v || b == v || distance_to_segment(p, pool_[a], pool_[b]) > reach_) return;
+        if (a == v || b == v) return;
+        const double gap = distance_to_segment(p, pool_[a], pool_[b]);
+        // what is a contact for validation (half the least reach) must be joined in any case
+        if (gap > reach_ || (!pieces_.join_needles && gap > 0.6 * reach_ && is_needle(v, e))) return;
         put_on_edge(v, e);
         ++pieces_.actions.vertices_joined_to_edges;
         note_common(carriers_of_vertex_.at(v), edges_.carriers.at(e), v);
@@ -230,6 +240,19 @@ void ContactFinder::vertex_to_triangles(Vertex v) {
         const std::array<Carrier, 1> one{t};
         note_common(carriers_of_vertex_.at(v), one, v);
     });
+}
+
+/// Splits of splits, too, as deep as they go: each was made later than the one that it splits.
+void ContactFinder::follow_split(std::uint32_t e) {
+    if (splits_.empty()) return;
+    std::vector<EdgeKey> todo{edges_.keys[e]};
+    constexpr std::size_t kMost = 10000;
+    for (std::size_t i = 0; i < todo.size() && todo.size() < kMost; ++i) {
+        const auto found = splits_.find(todo[i]);
+        if (found == splits_.end()) continue;
+        put_on_edge(found->second, e);
+        for (const VertexId end : edge_ends(todo[i])) todo.push_back(piece_edge(end.value(), found->second));
+    }
 }
 
 void ContactFinder::edge_to_edges(std::uint32_t e) {
@@ -332,7 +355,7 @@ void ContactFinder::draw_lines(Carrier s, Carrier t, std::vector<Vertex> common)
         std::stable_sort(common.begin(), common.end(), [&](Vertex v, Vertex w) { return dot(pool_[v] - from, along) < dot(pool_[w] - from, along); });
         for (std::size_t i = 0; i + 1 < common.size(); ++i)
             for (const Carrier c : {s, t})
-                if (is_triangle(c)) found_.lines[c].push_back({common[i], common[i + 1]});
+                if (is_triangle(c)) found_.lines[c].push_back({{common[i], common[i + 1]}, c == s ? t : s});
         return;
     }
     draw_along_edges(s, t, common);
@@ -354,12 +377,12 @@ void ContactFinder::draw_along_edges(Carrier s, Carrier t, const std::vector<Ver
             chain.insert(chain.end(), split->second.begin(), split->second.end());
         chain.push_back(std::max(a, b));
         for (std::size_t i = 0; i + 1 < chain.size(); ++i)
-            if (is_common(chain[i]) && is_common(chain[i + 1])) found_.lines[t].push_back({chain[i], chain[i + 1]});
+            if (is_common(chain[i]) && is_common(chain[i + 1])) found_.lines[t].push_back({{chain[i], chain[i + 1]}, s});
     }
 }
 
 }  // namespace
 
-Contacts find_contacts(Pieces& pieces) { return ContactFinder(pieces).run(); }
+Contacts find_contacts(Pieces& pieces, const EdgeSplits& splits) { return ContactFinder(pieces, splits).run(); }
 
 }  // namespace wellmesh

@@ -137,7 +137,8 @@ void PieceMaker::add_polygons(std::uint32_t f, const std::vector<Polygon>& polyg
     const std::uint32_t vertices = out_.pieces.pool.size();
     std::vector<std::uint32_t> all = task.points;
     for (const auto& e : task.border) all.push_back(e[0]);
-    const CutResult pieces = cut(std::move(task), out_.pieces.pool);
+    TriplePoints none;
+    const CutResult pieces = cut(std::move(task), out_.pieces.pool, none);
     if (pieces.lines.size() != edges || out_.pieces.pool.size() != vertices || !pieces.stacked.empty() || pieces.triangles.empty()) out_.facet_changed[f] = 1;
     if (pieces.triangles.empty()) ++out_.pieces.actions.degenerate_dropped;
     std::unordered_map<EdgeKey, int> covered;

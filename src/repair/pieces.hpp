@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "repair/vertex_pool.hpp"
@@ -40,11 +41,15 @@ struct Pieces {
     std::vector<WirePiece> wires;
     std::vector<std::uint32_t> lone;       ///< vertices that must be kept though nothing may use them
     std::uint32_t first_fresh_vertex = 0;  ///< this and later ones nobody has looked at yet
+    bool join_needles = true;              ///< whether a triangle that touches itself, being lower than the reach, is a contact
     RepairActions actions;
 };
 
 /// EdgeKey of two numbers.
 [[nodiscard]] constexpr EdgeKey piece_edge(std::uint32_t a, std::uint32_t b) { return edge_key(VertexId{a}, VertexId{b}); }
+
+/// A vertex inside an edge that has been replaced by two.
+using EdgeSplits = std::unordered_map<EdgeKey, std::uint32_t>;
 
 /// Merges triangles with the same corners (the windings add up) and wires with the same ends.
 void merge_copies(Pieces& pieces);

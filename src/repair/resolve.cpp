@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <cstdio>
-#include <cstdlib>
 
 #include "core/vec3_math.hpp"
 #include "repair/cut_triangle.hpp"
@@ -36,12 +34,13 @@ private:
 
 class Round {
 public:
-    Round(StatedPieces& stated, const Contacts& contacts) : stated_(stated), pieces_(stated.pieces), contacts_(contacts) {}
+    Round(StatedPieces& stated, const Contacts& contacts, EdgeSplits& splits)
+        : stated_(stated), pieces_(stated.pieces), contacts_(contacts), splits_(splits) {}
 
     void run() {
         std::vector<Piece> old = std::move(pieces_.triangles);
         pieces_.triangles.clear();
-        for (std::uint32_t t = 0; t < old.size(); ++t) add(old[t], contacts_.inside[t], contacts_.lines[t]);
+        for (std::uint32_t t = 0; t < old.size(); ++t) add(t, old[t]);
         split_wires();
         if (!aliases_.empty()) rename();
         merge_copies(pieces_);
@@ -57,17 +56,21 @@ private:
         else
             loop.insert(loop.end(), found->second.rbegin(), found->second.rend());
     }
-    void add(const Piece& piece, const std::vector<Vertex>& inside, const std::vector<std::array<Vertex, 2>>& lines);
+    void add(std::uint32_t number, const Piece& piece);
     void split_wires();
     void rename();
 
     StatedPieces& stated_;
     Pieces& pieces_;
     const Contacts& contacts_;
+    EdgeSplits& splits_;
     Aliases aliases_;
+    TriplePoints triples_;
 };
 
-void Round::add(const Piece& piece, const std::vector<Vertex>& inside, const std::vector<std::array<Vertex, 2>>& lines) {
+void Round::add(std::uint32_t number, const Piece& piece) {
+    const auto& inside = contacts_.inside[number];
+    const auto& lines = contacts_.lines[number];
     std::vector<Vertex> loop;
     for (std::size_t i = 0; i < 3; ++i) append_chain(piece.v[i], piece.v[(i + 1) % 3], loop);
     if (loop.size() == 3 && inside.empty() && lines.empty()) {
@@ -81,21 +84,15 @@ void Round::add(const Piece& piece, const std::vector<Vertex>& inside, const std
     CutResult result;
     if (!task.border.empty()) {
         task.lines = lines;
+        task.self = number;
+        task.only_border_encloses = true;
         task.points = inside;
         const Vec3& a = pieces_.pool[piece.v[0]];
         task.normal = cross(pieces_.pool[piece.v[1]] - a, pieces_.pool[piece.v[2]] - a);
-        result = cut(task, pieces_.pool);
+        result = cut(std::move(task), pieces_.pool, triples_);
+        for (const auto& split : result.splits) splits_.try_emplace(piece_edge(split.edge[0], split.edge[1]), split.inside);
     }
     if (result.triangles.empty()) ++pieces_.actions.degenerate_dropped;
-    if (std::getenv("DBG2")) {
-        std::fprintf(stderr, "DBG cut %u %u %u:", piece.v[0], piece.v[1], piece.v[2]);
-        for (auto& e : task.border) std::fprintf(stderr, " b%u-%u", e[0], e[1]);
-        for (auto& e : lines) std::fprintf(stderr, " l%u-%u", e[0], e[1]);
-        for (auto& e : result.triangles) std::fprintf(stderr, " [%u %u %u]", e[0], e[1], e[2]);
-        for (auto& e : result.stacked) std::fprintf(stderr, " s%u-%u", e[0], e[1]);
-        std::fprintf(stderr, "\n");
-        for (auto v : piece.v) std::fprintf(stderr, "DBG    %u %.17g %.17g %.17g\n", v, pieces_.pool[v].x, pieces_.pool[v].y, pieces_.pool[v].z);
-    }
     for (const auto& [kept, gone] : result.stacked) aliases_.add(kept, gone);
     for (const auto& v : result.triangles) pieces_.triangles.push_back({v, piece.source, piece.winding, true});
 }
@@ -177,36 +174,28 @@ void merge_copies(Pieces& pieces) {
 }
 
 Resolution resolve(StatedPieces& stated, double least_reach, const std::stop_token& stop) {
+    constexpr std::size_t kMostGrowth = 30;  // two surfaces that intersect each other everywhere grew 15-fold
     constexpr unsigned kMostRounds = 60;  // inputs with thousands of intersections took five to ten
-    // What lies closer than the tolerance may have no triangulation without needles lower than it, and joining one makes the next. So after some rounds
-    // the reach shrinks, to what merely keeps new vertices apart from contacts of a few ulp.
-    constexpr unsigned kFullRounds = 3;
+    // What lies closer than the tolerance may have no triangulation without needles lower than it, and joining one would make the next: everything is
+    // joined once. From then on the reach merely keeps vertices apart from contacts of a few ulp.
     Pieces& pieces = stated.pieces;
     Resolution result;
+    EdgeSplits splits;
     merge_copies(pieces);
-    while (result.rounds < kMostRounds) {
+    const std::size_t most_triangles = kMostGrowth * pieces.triangles.size() + 100000;
+    while (result.rounds < kMostRounds && pieces.triangles.size() <= most_triangles) {
         if (stop.stop_requested()) throw MeshError(ErrorCode::cancelled, Stage::validate, "interrupted while repairing");
         ++result.rounds;
-        if (result.rounds > kFullRounds) pieces.pool.shrink_reach(std::max(least_reach, 0.5 * pieces.pool.reach()));
+        if (result.rounds > 1) pieces.pool.shrink_reach(least_reach);
+        pieces.join_needles = result.rounds <= 2;
         const std::uint32_t vertices = pieces.pool.size();
-        const Contacts contacts = find_contacts(pieces);
+        const Contacts contacts = find_contacts(pieces, splits);
+        splits.clear();
         if (contacts.empty()) {
             result.complete = true;
             break;
         }
-        if (std::getenv("DBG")) {
-            std::size_t in = 0, li = 0;
-            for (auto& x : contacts.inside) in += x.size();
-            for (auto& x : contacts.lines) li += x.size();
-            std::fprintf(stderr, "DBG round %u tris %zu wires %zu verts %u on_edge %zu inside %zu lines %zu\n", result.rounds, pieces.triangles.size(), pieces.wires.size(), pieces.pool.size(), contacts.on_edge.size(), in, li);
-            if (result.rounds > 50) {
-                for (auto& [k, l] : contacts.on_edge) { auto e = edge_ends(k); std::fprintf(stderr, "DBG  edge %u %u (len %g):", e[0].value(), e[1].value(), distance(pieces.pool[e[0].value()], pieces.pool[e[1].value()])); for (auto v : l) std::fprintf(stderr, " %u", v); std::fprintf(stderr, "\n");
-                  for (auto& t : pieces.triangles) { int n = 0; for (auto v : t.v) n += v == e[0].value() || v == e[1].value(); if (n == 2) std::fprintf(stderr, "DBG      tri %u %u %u fresh %d w %d\n", t.v[0], t.v[1], t.v[2], t.fresh, t.winding); } }
-                for (std::size_t t = 0; t < contacts.inside.size(); ++t) for (auto v : contacts.inside[t]) std::fprintf(stderr, "DBG  tri %u %u %u has %u\n", pieces.triangles[t].v[0], pieces.triangles[t].v[1], pieces.triangles[t].v[2], v);
-                for (std::size_t t = 0; t < contacts.inside.size(); ++t) for (auto v : contacts.lines[t]) std::fprintf(stderr, "DBG  tri %u %u %u line %u %u\n", pieces.triangles[t].v[0], pieces.triangles[t].v[1], pieces.triangles[t].v[2], v[0], v[1]);
-            }
-        }
-        Round(stated, contacts).run();
+        Round(stated, contacts, splits).run();
         pieces.first_fresh_vertex = vertices;
     }
     return result;
