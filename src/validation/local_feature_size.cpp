@@ -29,22 +29,6 @@ bool share_a_number(const std::vector<std::uint32_t>& a, const std::vector<std::
 
 }  // namespace
 
-double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
-    const Vec3 d = b - a;
-    const double length = squared_norm(d);
-    const double t = length > 0 ? std::clamp(dot(x - a, d) / length, 0.0, 1.0) : 0.0;
-    // From the nearer end, so that nothing cancels at the other.
-    return t < 0.5 ? norm(x - (a + t * d)) : norm(x - (b + (std::clamp(dot(x - b, d) / length, -1.0, 0.0)) * d));
-}
-
-double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 n = cross(b - a, c - a);
-    const double area = norm(n);
-    const bool over = area > 0 && dot(cross(b - x, c - x), n) >= 0 && dot(cross(c - x, a - x), n) >= 0 && dot(cross(a - x, b - x), n) >= 0;
-    if (over) return std::abs(dot(x - a, n)) / area;
-    return std::min({distance_to_segment(x, a, b), distance_to_segment(x, b, c), distance_to_segment(x, c, a)});
-}
-
 LocalFeatureSize::LocalFeatureSize(const ValidPlc& plc) {
     const auto point = [&](VertexId v) { return plc.vertices[v.index()]; };
     for (std::size_t i = 0; i < plc.vertices.size(); ++i) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "validation/closest_points.hpp"
 #include "validation/valid_plc.hpp"
 
 namespace wellmesh {
@@ -58,9 +59,5 @@ private:
     void search(const Vec3& x, std::size_t begin, std::size_t end, unsigned depth, std::array<double, 2>& nearest) const;
     std::vector<Vec3> points_;  // median of each range in its middle, along x, y, z in turns
 };
-
-/// Distances to a segment and to a triangle, however degenerate.
-[[nodiscard]] double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b);
-[[nodiscard]] double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace wellmesh

@@ -7,30 +7,11 @@
 
 #include "core/vec3_math.hpp"
 #include "validation/box_tree.hpp"
+#include "validation/closest_points.hpp"
 #include "validation/find_intersections.hpp"
 #include "validation/triangle_contact.hpp"
 
 namespace wellmesh {
-namespace {
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const Vec3 u = b - a;
-    const double length2 = squared_norm(u);
-    const double t = length2 > 0 ? std::clamp(dot(p - a, u) / length2, 0.0, 1.0) : 0.0;
-    return norm((p - a) - t * u);
-}
-
-double distance_to_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
-    const double boundary = std::min({distance_to_segment(p, t[0], t[1]), distance_to_segment(p, t[1], t[2]), distance_to_segment(p, t[2], t[0])});
-    const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
-    const double length = norm(n);
-    if (!(length > 0)) return boundary;
-    for (std::size_t i = 0; i < 3; ++i)
-        if (dot(cross(t[(i + 1) % 3] - t[i], p - t[i]), n) < 0) return boundary;
-    return std::min(boundary, std::abs(dot(p - t[0], n)) / length);
-}
-
-}  // namespace
 
 void find_thin_features(const CleanInput& input, const Soup& soup, const EdgeTable& edges, const FacetGroups& groups, const Rounding& rounding,
                         Report& report) {
