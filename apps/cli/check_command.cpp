@@ -18,25 +18,28 @@ namespace wellmesh::cli {
 namespace {
 
 struct CheckCommand {
-    std::string mesh, plc, weights, json;
+    std::string mesh, plc, weights, exempt, json;
     bool quiet = false;
     CertifyOptions options;
 };
 
 int run(const CheckCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.options);
-    require_report(arguments.json, {arguments.mesh, arguments.plc, arguments.weights});
+    require_report("--json", arguments.json, {arguments.mesh, arguments.plc, arguments.weights, arguments.exempt});
     TetMesh mesh = read_mesh(arguments.mesh);
     if (!arguments.weights.empty()) mesh.weights = read_weights(arguments.weights, mesh.vertices.size());
     std::optional<Plc> plc;
     if (!arguments.plc.empty()) plc = read_plc(arguments.plc);
-    const Certificate certificate = certify(mesh, arguments.options, plc ? &*plc : nullptr);
+    CertifyOptions options = arguments.options;
+    if (!arguments.exempt.empty()) options.exempt = read_exemptions(arguments.exempt, mesh.tets.size());
+    const Certificate certificate = certify(mesh, options, plc ? &*plc : nullptr);
     const int status = certificate.proven() ? kGoalsMet : kGoalsUnmet;
 
     if (!arguments.json.empty()) {
         Json json = json_header("check", arguments.mesh);
         json["plc"] = arguments.plc.empty() ? Json(nullptr) : Json(arguments.plc);
         json["weights"] = arguments.weights.empty() ? Json(nullptr) : Json(arguments.weights);
+        json["exempt"] = arguments.exempt.empty() ? Json(nullptr) : Json(arguments.exempt);
         json["options"] = to_json(arguments.options);
         json["exit_status"] = status;
         json["vertices"] = mesh.vertices.size();
@@ -58,6 +61,8 @@ void add_check_command(CLI::App& program, Command& selected) {
     command.add_option("MESH", arguments->mesh, "tetrahedral mesh of any tool: .mesh (ASCII) .msh .vtu .node/.ele")->required()->type_name("");
     command.add_option("--plc", arguments->plc, "the domain that the mesh claims to fill (default: claims about it are not checked)")->type_name("FILE");
     command.add_option("--weights", arguments->weights, "the vertices' weights, .sol or .node: the mesh claims to be weighted Delaunay (default: Delaunay)")
+        ->type_name("FILE");
+    command.add_option("--exempt", arguments->exempt, "tetrahedra that need not keep the bounds on shape, a number from 1 a line: what --exemptions wrote (default: none)")
         ->type_name("FILE");
     add_certify_flags(command, arguments->options);
     add_json_flag(command, arguments->json);

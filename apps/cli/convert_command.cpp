@@ -46,7 +46,7 @@ int run(const ConvertCommand& arguments, Interrupt& interrupt) {
                         fmt::format("{}: unknown format '{}'; known are .poly .smesh .off .stl .obj .ply .vtp for complexes, .vtu .inp .node .ele for meshes, .mesh .msh for both",
                                     arguments.output, extension));
     require_outputs({arguments.output}, {arguments.input});
-    require_report(arguments.json, {arguments.input, arguments.output});
+    require_report("--json", arguments.json, {arguments.input, arguments.output});
 
     const std::string from = lower_extension(arguments.input);
     const bool to_complex = has(kComplexOnly, extension) || arguments.as_complex;

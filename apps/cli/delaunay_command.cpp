@@ -28,7 +28,7 @@ int run(const DelaunayCommand& arguments, Interrupt& interrupt) {
     require_mesh_outputs(arguments.outputs, {arguments.points});
     std::vector<std::string> others = arguments.outputs;
     others.push_back(arguments.points);
-    require_report(arguments.json, others);
+    require_report("--json", arguments.json, others);
 
     const Stopwatch reading;
     const std::vector<Vec3> points = read_points(arguments.points);

@@ -30,7 +30,7 @@ struct DoctorCommand {
 
 int run(const DoctorCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.options);
-    require_report(arguments.json, {arguments.input});
+    require_report("--json", arguments.json, {arguments.input});
     Plc plc = read_plc(arguments.input);
     add_seeds(arguments.seeds, plc);
     if (!arguments.repaired.empty()) {

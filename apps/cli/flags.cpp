@@ -340,14 +340,14 @@ void require_outputs(const std::vector<std::string>& outputs, const std::vector<
     for (const std::string& output : outputs) require_writable(output);
 }
 
-void require_report(const std::string& json, const std::vector<std::string>& others) {
-    if (json.empty()) return;
-    const fs::path target = resolved(json);
+void require_report(const std::string& flag, const std::string& report, const std::vector<std::string>& others) {
+    if (report.empty()) return;
+    const fs::path target = resolved(report);
     std::error_code ignored;
     for (const std::string& other : others)
         for (const fs::path& file : files_behind(other))
-            if (target == file || fs::equivalent(target, file, ignored)) bad_options({fmt::format("--json {}: writing it would replace {}", json, file.string())});
-    require_writable(json);
+            if (target == file || fs::equivalent(target, file, ignored)) bad_options({fmt::format("{} {}: writing it would replace {}", flag, report, file.string())});
+    require_writable(report);
 }
 
 }  // namespace wellmesh::cli

@@ -52,8 +52,8 @@ void require_mesh_outputs(const std::vector<std::string>& outputs, const std::ve
 /// The part of it that concerns no format. @param problems  found already, listed with the others
 void require_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs, std::vector<std::string> problems = {});
 
-/// @throws MeshError{bad_options} if the report `json` would replace one of `others`, MeshError{cannot_write} for what can be known
+/// @throws MeshError{bad_options} if the report of this flag would replace one of `others`, MeshError{cannot_write} for what can be known
 ///         to fail. An empty name is no report.
-void require_report(const std::string& json, const std::vector<std::string>& others);
+void require_report(const std::string& flag, const std::string& report, const std::vector<std::string>& others);
 
 }  // namespace wellmesh::cli

@@ -141,7 +141,14 @@ Json to_json(const Certificate& certificate) {
     for (const RegionVolume& region : certificate.regions)
         regions.push_back({{"region", region.region}, {"tets", region.tets}, {"volume", region.volume}, {"plc_volume", or_null(region.plc_volume)}});
     Json json = {{"proven", certificate.proven()}, {"claims", std::move(claims)}, {"regions", std::move(regions)}};
-    json["shape"] = {{"all", to_json(certificate.all)}, {"interior", to_json(certificate.interior)}, {"boundary", to_json(certificate.boundary)}};
+    json["shape"] = {{"all", to_json(certificate.all)}, {"interior", to_json(certificate.interior)}, {"boundary", to_json(certificate.boundary)},
+                     {"unexempt", to_json(certificate.unexempt)}};
+    return json;
+}
+
+Json to_json(const std::vector<Exemption>& exemptions) {
+    Json json = Json::array();
+    for (const Exemption& e : exemptions) json.push_back({{"tet", e.tet + 1}, {"feature", to_json(e.feature)}, {"angle_deg", e.angle_deg}});
     return json;
 }
 

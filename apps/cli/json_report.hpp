@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json to_json(const CertifyOptions& options);
 [[nodiscard]] Json to_json(const std::vector<AskedAchieved>& goals);
 [[nodiscard]] Json to_json(const Certificate& certificate);
+[[nodiscard]] Json to_json(const std::vector<Exemption>& exemptions);
 [[nodiscard]] Json to_json(const ShapeStatistics& statistics);
 [[nodiscard]] Json to_json(const InvariantReport& report);
 [[nodiscard]] Json to_json(const GivenMeshStatistics& given);

@@ -44,6 +44,7 @@ std::string render(const MeshResult& result, const std::vector<StageTime>& stage
     if (s.certificate_tolerance > defaults.tolerance || s.certificate_flat_angle_rad > defaults.flat_angle_rad)
         text += fmt::format("note: the input's rounding shows in the mesh: check it with --tolerance {:.4g} --flat-angle {:.4g}\n", s.certificate_tolerance, s.certificate_flat_angle_rad);
     if (s.given) text += render_given(*s.given);
+    if (!result.exemptions.empty()) text += render_exemptions(result);
     if (s.weighted_vertices > 0)
         text += fmt::format("note: the mesh is weighted Delaunay: {} of {} vertices have a weight; check it with --weights\n", s.weighted_vertices,
                             result.mesh.vertices.size());
@@ -75,6 +76,7 @@ Json report(const MeshJob& job, const MeshResult& result, const std::vector<Stag
     json["tets"] = result.mesh.tets.size();
     json["goals"] = to_json(result.goals);
     json["certificate"] = to_json(result.certificate);
+    json["exemptions"] = to_json(result.exemptions);
     if (result.invariants) json["invariants"] = to_json(*result.invariants);
     json["statistics"] = to_json(result.statistics);
     json["timings"] = to_json(stages);
@@ -110,6 +112,10 @@ int run(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& r
         const auto written = write_mesh(result.mesh, output, write);
         files.insert(files.end(), written.begin(), written.end());
     }
+    if (!job.exemptions.empty()) {
+        const auto written = write_exemptions(result.exemptions, job.exemptions, write);
+        files.insert(files.end(), written.begin(), written.end());
+    }
     if (!files.empty()) stages.push_back({.stage = Stage::write, .seconds = writing.seconds()});
 
     const int status = goals_met(result) ? kGoalsMet : kGoalsUnmet;
@@ -128,6 +134,8 @@ int run(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& r
 void add_job_flags(CLI::App& command, MeshJob& job) {
     add_output_flag(command, job.outputs, "mesh to write: .mesh .vtu .msh .inp .node/.ele, by extension; may be given several times");
     add_write_flags(command, job.write);
+    command.add_option("--exemptions", job.exemptions, "write the tetrahedra that the input's acute angles force below the goals: number, feature, angle, a line each")
+        ->type_name("FILE");
     add_json_flag(command, job.json);
     command.add_flag("--quiet", job.quiet, "no report and no progress line; errors still go to standard error");
 }
@@ -153,7 +161,9 @@ int produce_mesh(const MeshJob& job, Interrupt& interrupt, const std::function<v
     require_mesh_outputs(job.outputs, inputs);
     std::vector<std::string> others = job.outputs;
     others.insert(others.end(), inputs.begin(), inputs.end());
-    require_report(job.json, others);
+    require_report("--exemptions", job.exemptions, others);
+    if (!job.exemptions.empty()) others.push_back(job.exemptions);
+    require_report("--json", job.json, others);
     // Programs that asked for a report get the reason in it, too.
     const auto report_error = [&](const MeshError& error) {
         if (job.json.empty() || error.code() == ErrorCode::cannot_write || error.code() == ErrorCode::cancelled) return;

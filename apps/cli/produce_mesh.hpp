@@ -23,13 +23,14 @@ struct MeshJob {
     std::vector<std::string> inputs;  ///< files that are read, the one that reports name first
     std::vector<std::string> outputs;
     std::string background;           ///< a mesh with sizes; empty: none
+    std::string exemptions;           ///< file for the tetrahedra that acute angles force below the goals; empty: none
     std::string json;
     bool quiet = false;
     MeshOptions options{};
     WriteOptions write{};
 };
 
-/// -o, --msh-version, --json and --quiet.
+/// -o, --msh-version, --exemptions, --json and --quiet.
 void add_job_flags(CLI::App& command, MeshJob& job);
 
 /// --background.

@@ -21,7 +21,7 @@ struct QualityCommand {
 };
 
 int run(const QualityCommand& arguments, Interrupt& interrupt) {
-    require_report(arguments.json, {arguments.mesh});
+    require_report("--json", arguments.json, {arguments.mesh});
     const TetMesh mesh = read_mesh(arguments.mesh);
     Certificate certificate;
     measure_shape(mesh, certificate);

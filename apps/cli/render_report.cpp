@@ -135,6 +135,14 @@ std::string render_invariants(const InvariantReport& report) {
     return text;
 }
 
+std::string render_exemptions(const MeshResult& result) {
+    const Exemption& sharpest = *std::min_element(result.exemptions.begin(), result.exemptions.end(), [](const Exemption& a, const Exemption& b) { return a.angle_deg < b.angle_deg; });
+    const ShapeStatistics& all = result.certificate.all;
+    return fmt::format("note: {} tetrahedra miss a goal because acute angles of the input force them to, and are exempt: {:.4g} degrees and R/L {:.4g} with them; the sharpest angle is\n"
+                       "      {:.4g} degrees at {}; --exemptions FILE lists them\n",
+                       result.exemptions.size(), all.min_dihedral_angle_deg, all.max_radius_edge_ratio, sharpest.angle_deg, describe(sharpest.feature));
+}
+
 std::string render_given(const GivenMeshStatistics& given) {
     std::string text = fmt::format("the given mesh: {} vertices; {} of its {} tetrahedra are Delaunay; smallest dihedral angle {:.4g} degrees\n", given.vertices,
                                    given.delaunay_tets, given.tets, given.min_dihedral_angle_deg);

@@ -22,6 +22,8 @@ namespace wellmesh::cli {
 [[nodiscard]] std::string render_shape(const Certificate& certificate);           ///< all, interior, boundary side by side
 [[nodiscard]] std::string render_histogram(const ShapeStatistics& statistics);
 [[nodiscard]] std::string render_invariants(const InvariantReport& report);
+/// How many tetrahedra acute angles force below the goals, and the sharpest of these angles. @pre there are any
+[[nodiscard]] std::string render_exemptions(const MeshResult& result);
 [[nodiscard]] std::string render_given(const GivenMeshStatistics& given);        ///< a few lines
 [[nodiscard]] std::string render_regions(const Certificate& certificate);
 [[nodiscard]] std::string render_stages(const std::vector<StageTime>& stages);

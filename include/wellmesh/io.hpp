@@ -9,6 +9,7 @@
 
 #include "wellmesh/background_mesh.hpp"
 #include "wellmesh/error.hpp"
+#include "wellmesh/exemption.hpp"
 #include "wellmesh/plc.hpp"
 #include "wellmesh/tet_mesh.hpp"
 
@@ -58,6 +59,13 @@ std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::fi
 /// several polygons or with holes become triangles where it has none, polygons of more than three corners where it has but triangles.
 /// @return the files written. @throws MeshError  cannot_write; bad_input: a facet that can't be triangulated.
 std::vector<std::filesystem::path> write_plc(const Plc& plc, const std::filesystem::path& path, const WriteOptions& options = {});
+
+/// Writes a line for each: number of the tetrahedron, from 1, kind and number of the input feature, its angle [deg], and where it is. Lines that begin
+/// with # are comments. @return the file written. @throws MeshError  cannot_write.
+std::vector<std::filesystem::path> write_exemptions(const std::vector<Exemption>& exemptions, const std::filesystem::path& path, const WriteOptions& options = {});
+/// Reads such a file, of any tool: the first number of each line counts. @param tets  how many the mesh has.
+/// @return numbers from 0, ascending, for CertifyOptions::exempt. @throws MeshError  cannot_read, bad_input (file, line, token).
+[[nodiscard]] std::vector<std::uint64_t> read_exemptions(const std::filesystem::path& path, std::size_t tets);
 
 /// Whether a file is a tetrahedral mesh: a .node or .ele, or a .mesh, .msh or .vtu with tetrahedra. @throws as read_mesh
 [[nodiscard]] bool holds_mesh(const std::filesystem::path& path);
