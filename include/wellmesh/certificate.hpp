@@ -69,7 +69,7 @@ struct CertifyOptions {
     std::optional<double> min_dihedral_boundary_deg{}, min_sigma_boundary{};
     double tolerance = 1e-9;        ///< how far a subface may leave the PLC, relative to the PLC's diagonal
     double flat_angle_rad = 1e-6;   ///< two constraint triangles that bend less than this make no segment
-    /// Tetrahedra, numbers from 0, ascending, for which no bound on shape holds. Each must have two vertices on constraint triangles.
+    /// Tetrahedra, numbers from 0, ascending, for which no bound on shape holds. Each must have two vertices on constraint triangles or listed subsegments.
     std::vector<std::uint64_t> exempt{};
     std::stop_token stop{};         ///< polled between claims: the ones not reached stay `not_checked`
 };

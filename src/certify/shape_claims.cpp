@@ -70,9 +70,12 @@ void measure(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& tri
 
 /// What an input angle forces is at the boundary: between two cells of the input.
 Claim claim_exemptions(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<std::uint64_t>& exempt) {
-    ClaimBuilder claim("exemptions", "Every tetrahedron that is exempt from the bounds has two vertices on constraint triangles.");
+    ClaimBuilder claim("exemptions", "Every tetrahedron that is exempt from the bounds has two vertices on constraint triangles or listed subsegments.");
     if (exempt.empty()) return claim.undecided("none is exempt");
-    const std::vector<bool> on_constraint = vertices_on(mesh, triangles);
+    std::vector<bool> on_constraint = vertices_on(mesh, triangles);
+    for (const auto& edge : mesh.mesh().subsegments)
+        for (const std::uint32_t v : edge)
+            if (v < on_constraint.size()) on_constraint[v] = true;
     claim.checked(exempt.size());
     for (const std::uint64_t t : exempt) {
         if (t >= mesh.tet_count()) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "conforming/place_point.hpp"
 #include "core/vec3_math.hpp"
 
 namespace wellmesh {
@@ -20,7 +21,7 @@ double degrees_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cr
 
 }  // namespace
 
-AcuteExemptions::AcuteExemptions(const ConformingMesh& mesh, const AcuteGeometry& acute) : mesh_(mesh), acute_(acute) {
+AcuteExemptions::AcuteExemptions(const ConformingMesh& mesh, AcuteGeometry& acute) : mesh_(mesh), acute_(acute) {
     const ValidPlc& plc = mesh.plc();
     if (!acute.any()) return;
     vertex_deg_.assign(plc.vertices.size(), kNoAngle);
@@ -88,21 +89,57 @@ std::optional<AcuteExemptions::Meeting> AcuteExemptions::meeting_of(VertexId p, 
     return best;
 }
 
-bool AcuteExemptions::forces_shortest_edge(TetId t) const {
-    if (!acute_.any()) return false;
+std::array<VertexId, 2> AcuteExemptions::shortest_edge(TetId t) const {
     const auto& c = mesh_.tets().corners(t);
     double shortest = std::numeric_limits<double>::infinity();
-    VertexId p{}, q{};
+    std::array<VertexId, 2> out{};
     for (const auto& e : kEdgeCorners) {
         const double d = squared_distance(mesh_.point(c[e[0]]), mesh_.point(c[e[1]]));
         if (d >= shortest) continue;
         shortest = d;
-        p = c[e[0]];
-        q = c[e[1]];
+        out = {c[e[0]], c[e[1]]};
     }
+    return out;
+}
+
+bool AcuteExemptions::forces_shortest_edge(TetId t) const {
+    if (!acute_.any()) return false;
+    const auto [p, q] = shortest_edge(t);
     if (!on_boundary(p) || !on_boundary(q)) return false;
     const auto meeting = meeting_of(p, q);
     return meeting && meeting->seen_deg < kForcedBelowDeg;
+}
+
+/// The sharpest acute vertex of the cells that carry the copied end of a tetrahedron's shortest edge, if that is all on the boundary.
+std::optional<ForcedBy> AcuteExemptions::origin_of_copy(TetId t) const {
+    const auto ends = shortest_edge(t);
+    if (!on_boundary(ends[0]) || !on_boundary(ends[1])) return std::nullopt;
+    std::optional<ForcedBy> best;
+    const auto offer = [&](VertexId v) {
+        const double angle = vertex_deg_[v.index()];
+        if (angle != kNoAngle && (!best || angle < best->angle_deg)) best = ForcedBy{EntityKind::vertex, v.value(), angle};
+    };
+    for (const VertexId v : ends) {
+        const VertexInfo& info = mesh_.info(v);
+        if (!info.copied) continue;
+        if (info.carrier == CarrierKind::segment)
+            for (const VertexId end : mesh_.plc().segments[info.carrier_id].ends) offer(end);
+        else if (info.carrier == CarrierKind::facet)
+            for (const VertexId w : mesh_.plc().facets[info.carrier_id].vertices) offer(w);
+    }
+    return best;
+}
+
+/// Is the circumcentre in the ball about v, where nothing is inserted?
+bool AcuteExemptions::holds_centre(TetId t, VertexId v) const {
+    const auto& c = mesh_.tets().corners(t);
+    const Vec3 centre = circumcentre(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]));
+    return distance(centre, mesh_.point(v)) < acute_.ball_radius(v);
+}
+
+std::optional<ForcedBy> AcuteExemptions::feature_at(VertexId v) const {
+    if (v.index() >= vertex_deg_.size() || vertex_deg_[v.index()] == kNoAngle) return std::nullopt;
+    return ForcedBy{EntityKind::vertex, v.value(), vertex_deg_[v.index()]};
 }
 
 std::optional<ForcedBy> AcuteExemptions::feature_at(TetId t) const {
@@ -117,10 +154,12 @@ std::optional<ForcedBy> AcuteExemptions::feature_at(TetId t) const {
     if (best) return best->feature;
     if (std::count_if(c.begin(), c.end(), [&](VertexId v) { return on_boundary(v); }) < 2) return std::nullopt;
     for (const VertexId v : c) {
-        const VertexId ball = mesh_.info(v).ball;
-        if (ball.valid()) return ForcedBy{EntityKind::vertex, ball.value(), vertex_deg_[ball.index()]};
+        const VertexId ball = mesh_.info(v).carrier == CarrierKind::input_vertex ? v : mesh_.info(v).ball;
+        if (!ball.valid() || vertex_deg_[ball.index()] == kNoAngle) continue;
+        const ForcedBy by{EntityKind::vertex, ball.value(), vertex_deg_[ball.index()]};
+        if (v != ball || holds_centre(t, v)) return by;
     }
-    return std::nullopt;
+    return origin_of_copy(t);
 }
 
 }  // namespace wellmesh

@@ -85,6 +85,24 @@ Vec3 BoundaryRefiner::at_distance(SegmentId s, VertexId end, double d) const {
     return project_to_segment(mesh_.plc(), s, v + (d / distance(v, other)) * (other - v));
 }
 
+VertexId BoundaryRefiner::ball_holding(const Subsegment& s) {
+    for (const VertexId end : mesh_.plc().segments[s.segment.index()].ends)
+        if ((s.a == end || s.b == end) && distance(mesh_.point(s.a), mesh_.point(s.b)) <= acute_.ball_radius(end) * (1 + 1e-9)) return end;
+    return {};
+}
+
+VertexId BoundaryRefiner::ball_holding(const Subface& s) {
+    if (const VertexId apex = fan_apex(s.corners); apex.valid()) return apex;
+    const Vec3 p = project_to_facet(mesh_.plc().facets[s.facet.index()], circumcentre(mesh_.point(s.corners[0]), mesh_.point(s.corners[1]), mesh_.point(s.corners[2])));
+    const TetFace face = mesh_.find_subface(s);
+    if (!face.valid() || !in_exact_range(p) || !mesh_.triangulation().find_conflict_cavity(p, face.tet(), cavity_)) return {};
+    if (const VertexId v = ball_around(cavity_); v.valid()) return v;
+    find_encroached(cavity_, Placement::on_facet(s.facet), encroached_segments_, encroached_faces_);
+    for (const Subsegment& e : encroached_segments_)
+        if (const VertexId v = ball_holding(e); v.valid()) return v;
+    return {};
+}
+
 /// Empty: inside a ball, where nothing is split for quality.
 std::optional<BoundaryRefiner::AcutePlace> BoundaryRefiner::place_on_segment(const Subsegment& s, const SplitRequest& request) {
     const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b), middle = 0.5 * (a + b);

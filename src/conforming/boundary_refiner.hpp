@@ -93,6 +93,9 @@ public:
 
     /// The acute input vertex in whose ball the cavity's point lies, invalid if in none: its Delaunay neighbour, since balls are empty.
     [[nodiscard]] VertexId ball_around(const Cavity& cavity);
+    /// The acute vertex in whose ball this would be split for quality, hence is not; invalid if in none.
+    [[nodiscard]] VertexId ball_holding(const Subsegment& s);
+    [[nodiscard]] VertexId ball_holding(const Subface& s);
     /// May the cavity's point be inserted for this reason? Not in a ball, unless its size is asked for: then the ball shrinks.
     [[nodiscard]] bool makes_room(const Cavity& cavity, InsertionReason reason);
     [[nodiscard]] AcuteGeometry& acute() { return acute_; }

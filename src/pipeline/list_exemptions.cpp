@@ -7,7 +7,8 @@
 
 namespace wellmesh {
 
-std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, const AcuteExemptions& exemptions, const MeshOptions& options) {
+std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
+                                       std::uint32_t first_number) {
     std::vector<Exemption> out;
     const ValidPlc& plc = mesh.plc();
     if (plc.acute_features.empty()) return out;
@@ -17,11 +18,11 @@ std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::ve
         const auto& c = mesh.tets().corners(order[i]);
         const TetShape shape = shape_of(mesh.point(c[0]), mesh.point(c[1]), mesh.point(c[2]), mesh.point(c[3]));
         if (shape.radius_edge <= goals.max_radius_edge_ratio && shape.min_dihedral_deg >= angle) continue;
-        const auto by = exemptions.feature_at(order[i]);
+        const auto by = refiner.forced_by(order[i]);
         if (!by) continue;
         const bool segment = by->kind == EntityKind::segment;
         const Vec3 where = segment ? plc.vertices[plc.segments[by->id].ends[0].index()] : plc.vertices[by->id];
-        out.push_back({i, {by->kind, (segment ? by->id : plc.source_vertex[by->id]) + 1U, where}, by->angle_deg});
+        out.push_back({i, {by->kind, segment ? by->id + 1U : plc.source_vertex[by->id] + first_number, where}, by->angle_deg});
     }
     return out;
 }

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "conforming/acute_exemptions.hpp"
 #include "conforming/conforming_mesh.hpp"
+#include "refinement/refine.hpp"
 #include "wellmesh/exemption.hpp"
 #include "wellmesh/options.hpp"
 
@@ -12,6 +12,8 @@ namespace wellmesh {
 
 /// The tetrahedra, in the order of the output, that miss a quality goal and touch an acute feature of the input. Others that miss one are not
 /// excused.
-[[nodiscard]] std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, const AcuteExemptions& exemptions, const MeshOptions& options);
+/// @param first_number  of vertices in the source's own counting.
+[[nodiscard]] std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
+                                                     std::uint32_t first_number);
 
 }  // namespace wellmesh

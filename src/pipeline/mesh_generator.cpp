@@ -180,7 +180,7 @@ private:
         std::vector<TetId> order;
         result_.mesh = extract_mesh(mesh, order);
         result_.mesh.names = plc_.names;
-        result_.exemptions = list_exemptions(mesh, order, refiner.exemptions(), options_);
+        result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number);
         size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());
         if (verdict == RunGuard::Verdict::go_on && exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {

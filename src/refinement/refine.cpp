@@ -19,6 +19,9 @@ namespace {
 constexpr double kJudgeWithin = 1.5;
 /// Beyond this R/L the circumcentre in doubles is noise: the tetrahedron is split at a labelled face or at its longest edge.
 constexpr double kFlatRadiusEdge = 1e6;
+/// About acute angles refinement leaves only what is directly forced until it has made so many vertices, then all that touches an acute feature.
+constexpr double kGenerousGrowth = 3;
+constexpr std::size_t kGenerousAllowance = 500;
 constexpr double kFlatVolume = 1e-10;  // of the cubed longest edge: dihedral angles of about 1e-8 degrees
 
 SizeFieldDomain sampled_domain(const ConformingMesh& mesh, RunGuard& guard) {
@@ -215,7 +218,30 @@ VertexId Refiner::responsible_vertex(TetId t, InsertionReason reason) const {
 
 /// An edge that an acute angle of the input made short would be made anew, and shorter.
 bool Refiner::is_forced(TetId t, Fault fault) const {
-    return (fault == Fault::radius_edge || fault == Fault::flat) && exemptions_.forces_shortest_edge(t);
+    if (fault != Fault::radius_edge && fault != Fault::flat) return false;
+    // Flat ones between copies are for moves to mend; and where edges grade out of what copies made, too many vertices would be needed.
+    if (fault == Fault::flat || mesh_.vertex_count() > frugal_from_) return exemptions_.feature_at(t).has_value();
+    return exemptions_.forces_shortest_edge(t);
+}
+
+std::optional<ForcedBy> Refiner::forced_by(TetId t) {
+    if (!boundary_.acute().any()) return std::nullopt;
+    if (const auto feature = exemptions_.feature_at(t)) return feature;
+    const auto& k = mesh_.tets().corners(t);
+    if (std::count_if(k.begin(), k.end(), [&](VertexId v) { return mesh_.info(v).carrier != CarrierKind::region; }) < 2) return std::nullopt;
+    double radius = 0;
+    const Vec3 centre = flush_to_exact_range(circumcentre(mesh_.point(k[0]), mesh_.point(k[1]), mesh_.point(k[2]), mesh_.point(k[3]), &radius));
+    if (!in_exact_range(centre) || !mesh_.triangulation().find_conflict_cavity(centre, t, cavity_)) return std::nullopt;
+    if (const VertexId v = boundary_.ball_around(cavity_); v.valid()) return exemptions_.feature_at(v);
+    boundary_.find_encroached(cavity_, Placement::in_cell(mesh_.cell(t)), encroached_segments_, encroached_faces_);
+    VertexId ball{};
+    if (!encroached_segments_.empty()) {
+        ball = boundary_.ball_holding(longest_of(mesh_, encroached_segments_));
+    } else if (!encroached_faces_.empty()) {
+        double depth = 0;
+        ball = boundary_.ball_holding(Subface{holder_of_projection(mesh_, encroached_faces_, centre, depth)});
+    }
+    return ball.valid() ? exemptions_.feature_at(ball) : std::nullopt;
 }
 
 bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, InsertionReason reason) {
@@ -386,6 +412,8 @@ void Refiner::split_sized_boundary() {
 }
 
 RunGuard::Verdict Refiner::refine() {
+    if (boundary_.acute().any()) frugal_from_ = static_cast<std::size_t>(kGenerousGrowth * static_cast<double>(mesh_.vertex_count())) + kGenerousAllowance;
+    frugal_from_ += static_cast<std::size_t>(std::min(2 * sizes_.expected_vertices(), 1e9));
     split_sized_boundary();
     enqueue_all();
     keeps_last_ = max_vertices_.has_value();

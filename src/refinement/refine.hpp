@@ -44,7 +44,9 @@ public:
 
     enum class Fault : std::uint8_t { none, size, radius_edge, flat, sliver };
     [[nodiscard]] Fault classify(TetId t, double& squared_badness) const;
-    [[nodiscard]] const AcuteExemptions& exemptions() const { return exemptions_; }
+    /// The acute feature of the input that excuses a tetrahedron which misses a goal: one that it touches, or one whose ball holds the point
+    /// that would split it. Empty if there is none.
+    [[nodiscard]] std::optional<ForcedBy> forced_by(TetId t);
     [[nodiscard]] const RefineStatistics& statistics() const { return statistics_; }
     [[nodiscard]] const SizeField& sizes() const { return sizes_; }
     /// Sets the guard of Theorem 4.2: no edge below its bound is made for quality. The reference is the shortest edge of the mesh as it is now,
@@ -94,6 +96,7 @@ private:
     std::optional<SliverRule> sliver_rule_{};
     std::uint64_t sliver_budget_ = std::numeric_limits<std::uint64_t>::max();
     bool sliver_budget_spent_ = false;
+    std::size_t frugal_from_ = std::numeric_limits<std::size_t>::max();
     std::size_t original_vertices_ = 0;  // of the mesh that met its size first: slivers among them are the paper's original ones
     bool size_met_ = false;
     bool outside_rules_ = false;         // the point to be inserted is no pick of the paper's

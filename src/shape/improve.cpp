@@ -85,7 +85,7 @@ void ShapeImprover::touch(const std::vector<TetId>& tets) {
 }
 
 /// What an acute angle of the input forces is given its chance to move, but no splits: they would not end.
-bool ShapeImprover::is_left_alone(TetId t) const { return leaves_forced_ && refiner_.exemptions().feature_at(t).has_value(); }
+bool ShapeImprover::is_left_alone(TetId t) const { return leaves_forced_ && refiner_.forced_by(t).has_value(); }
 
 void ShapeImprover::leave_forced_alone() {
     leaves_forced_ = true;
