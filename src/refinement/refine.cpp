@@ -353,6 +353,33 @@ void Refiner::process(TetId t, InsertionReason reason) {
     process_centre(t, reason, centre, radius);
 }
 
+/// Where the boundary may not be split, as in the balls about acute vertices: a point on the way from the circumcentre to the shortest edge that encroaches
+/// nothing and makes no edge shorter than that one.
+void Refiner::insert_off_centre(TetId t, const Vec3& centre, InsertionReason reason) {
+    const auto& k = mesh_.tets().corners(t);
+    double shortest = std::numeric_limits<double>::infinity();
+    Vec3 middle{};
+    for (const auto& e : kEdgeCorners) {
+        const Vec3 &a = mesh_.point(k[e[0]]), &b = mesh_.point(k[e[1]]);
+        if (squared_distance(a, b) >= shortest) continue;
+        shortest = squared_distance(a, b);
+        middle = 0.5 * (a + b);
+    }
+    shortest = std::sqrt(shortest);
+    const Placement where = Placement::in_cell(mesh_.cell(t));
+    for (const double way : {0.15, 0.3, 0.45, 0.6}) {
+        const Vec3 p = flush_to_exact_range(centre + way * (middle - centre));
+        if (!mesh_.triangulation().find_conflict_cavity(p, t, cavity_) || mesh_.cell(cavity_.tets[0]) != mesh_.cell(t)) continue;
+        if (distance_to_nearest(mesh_, cavity_) < shortest) return;
+        boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
+        if (!encroached_segments_.empty() || !encroached_faces_.empty()) continue;
+        const bool was_judging = std::exchange(judging_, false);
+        const bool inserted = insert_in_cell(t, p, distance(p, middle), reason);
+        judging_ = was_judging;
+        if (inserted) return;
+    }
+}
+
 /// Inserts a point of the picking region, or splits what the centre encroaches.
 void Refiner::process_centre(TetId t, InsertionReason reason, const Vec3& centre, double radius) {
     const Placement where = Placement::in_cell(mesh_.cell(t));
@@ -368,12 +395,14 @@ void Refiner::process_centre(TetId t, InsertionReason reason, const Vec3& centre
             event.nearest = distance_to_nearest(mesh_, cavity_);
             request.rejected = boundary_.recorder->on_pick(event);
         }
+        BoundaryRefiner::SplitOutcome outcome{};
         if (!encroached_segments_.empty()) {
-            boundary_.split(Subsegment{longest_of(mesh_, encroached_segments_)}, request);
+            outcome = boundary_.split(Subsegment{longest_of(mesh_, encroached_segments_)}, request);
         } else {
             const Subface chosen = holder_of_projection(mesh_, encroached_faces_, centre, request.projection_depth);
-            boundary_.split(chosen, request);
+            outcome = boundary_.split(chosen, request);
         }
+        if (outcome == BoundaryRefiner::SplitOutcome::refused && boundary_.acute().any() && reason != InsertionReason::sliver) insert_off_centre(t, centre, reason);
     } else if (mesh_.cell(cavity_.tets[0]) == mesh_.cell(t)) {
         insert_in_cell(t, centre, radius, reason);
     }

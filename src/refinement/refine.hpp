@@ -70,6 +70,7 @@ private:
     void split_flat(TetId t);
     void process_centre(TetId t, InsertionReason reason, const Vec3& centre, double radius);
     void split_sized_boundary();
+    void insert_off_centre(TetId t, const Vec3& centre, InsertionReason reason);
     [[nodiscard]] Fault classify_strictly(TetId t, double& squared_badness) const;
     [[nodiscard]] bool strict() const { return boundary_.rules.strict; }
     bool star_is_good(const Cavity& cavity, const Placement& where) const;
