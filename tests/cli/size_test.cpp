@@ -98,7 +98,7 @@ TEST(sizes, out_of_range_are_usage_errors_that_say_the_range) {
     const RunOptions here = {.folder = scratch.path()};
     scratch.write("boxes.poly", two_boxes());
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
-        {{"--size-region", "2"}, "ID=H"},           {{"--size-region", "2=0"}, "above 0"},      {{"--size-region", "x=1"}, "ID=H"},     {{"--size-region", "2=nan"}, "ID=H"},
+        {{"--size-region", "2"}, "ID=H"},           {{"--size-region", "2=0"}, "above 0"},      {{"--size-region", "x=1"}, "no names"},   {{"--size-region", "2=nan"}, "ID=H"},
         {{"--size-facet", "99=1"}, "the markers"},  {{"--size-region", "99=1"}, "regions 1, 2"}, {{"--size-segment", "5=1"}, "marker 5"}, {{"--gradation", "2"}, "between 0"},
         {{"--gradation", "-1"}, "between 0"},       {{"--gradation", "x"}, "number or off"},    {{"--lfs", "0"}, "above 0"},            {{"--curvature", "2"}, "at least 3"},
         {{"--min-size", "-1"}, "above 0"},          {{"--vertex-sizes", "on"}, "auto nor off"}, {{"--gradation", "off", "--size-vertex", "4=1"}, "gradation"}};

@@ -50,6 +50,19 @@ TEST(StatedSizes, UnknownIdsAreErrorsThatNameTheKnownOnes) {
     }
 }
 
+TEST(StatedSizes, NamesStandForMarkers) {
+    Names names;
+    names.of_dimension[2] = {{3, "inlet"}, {4, "wall"}, {9, "inlet"}};
+    const std::vector<EntitySize> found = with_ids({{EntityKind::facet, 0, 0.5, "inlet"}, {EntityKind::region, 7, 0.25}}, names);
+    ASSERT_EQ(found.size(), 3U);
+    EXPECT_EQ(found[0].id, 3);
+    EXPECT_EQ(found[1].id, 9);
+    EXPECT_EQ(found[1].edge_length, 0.5);
+    EXPECT_EQ(found[2].kind, EntityKind::region);
+    EXPECT_EQ(found[2].id, 7);
+    for (const EntityKind kind : {EntityKind::facet, EntityKind::segment}) EXPECT_THROW((void)with_ids({{kind, 0, 1, "outlet"}}, names), MeshError);
+}
+
 TEST(StatedSizes, TheInputsOwnCountUnlessTurnedOff) {
     Plc input = cube();
     input.vertex_sizes = {0.1, 0, 0, 0, 0, 0, 0, 0.3};
