@@ -194,8 +194,11 @@ TEST(SizeField, AnswersThatAreNoLengthAreErrorsAndExceptionsPass) {
         goals.at = [bad](const Vec3&) { return bad; };
         EXPECT_THROW(SizeField(plc, goals), MeshError);
         goals.min_edge_length = 0.1;
-        if (bad == 0) EXPECT_NEAR(SizeField(plc, goals).edge_length({0.5, 0.5, 0.5}, CellId{1}), 0.1, 1e-12);
-        else EXPECT_THROW(SizeField(plc, goals), MeshError);
+        if (bad == 0) {
+            EXPECT_NEAR(SizeField(plc, goals).edge_length({0.5, 0.5, 0.5}, CellId{1}), 0.1, 1e-12);
+        } else {
+            EXPECT_THROW(SizeField(plc, goals), MeshError);
+        }
     }
     SizeGoals goals;
     goals.at = [](const Vec3&) -> double { throw 7; };
