@@ -149,9 +149,10 @@ void add_paper_flags(CLI::App& command, MeshOptions& options, const CLI::Option*
 EntitySize read_entity_size(const std::string& text, EntityKind kind, const std::string& flag) {
     const std::size_t equals = text.rfind('=');
     EntitySize size{kind, 0, 0};
-    const bool good = equals != std::string::npos && CLI::detail::lexical_cast(text.substr(0, equals), size.id) && CLI::detail::lexical_cast(text.substr(equals + 1), size.edge_length);
+    const bool good = equals != std::string::npos && equals > 0 && CLI::detail::lexical_cast(text.substr(equals + 1), size.edge_length);
     if (!good || !(size.edge_length > 0 && size.edge_length <= std::numeric_limits<double>::max()))
-        throw CLI::ValidationError(flag, fmt::format("must be ID=H, a whole number and an edge length above 0, not '{}'", text));
+        throw CLI::ValidationError(flag, fmt::format("must be ID=H, a number or a name and an edge length above 0, not '{}'", text));
+    if (!CLI::detail::lexical_cast(text.substr(0, equals), size.id)) size.name = text.substr(0, equals);
     return size;
 }
 
@@ -163,10 +164,10 @@ void add_size_field_flags(CLI::App& command, MeshOptions& options) {
             flag, [&size, kind, flag](const std::vector<std::string>& texts) { for (const std::string& text : texts) size.entities.push_back(read_entity_size(text, kind, flag)); }, what)
             ->type_name("ID=H")->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     };
-    on_entities("--size-region", EntityKind::region, "target edge length in a region, by its id; may be given several times, as may the next three");
-    on_entities("--size-facet", EntityKind::facet, "target edge length on the facets of this marker");
-    on_entities("--size-segment", EntityKind::segment, "target edge length on the segments of this marker");
-    on_entities("--size-vertex", EntityKind::vertex, "target edge length at the vertices of this marker");
+    on_entities("--size-region", EntityKind::region, "target edge length in a region, by its id or name; may be given several times, as may the next three");
+    on_entities("--size-facet", EntityKind::facet, "target edge length on the facets of this marker or name");
+    on_entities("--size-segment", EntityKind::segment, "target edge length on the segments of this marker or name");
+    on_entities("--size-vertex", EntityKind::vertex, "target edge length at the vertices of this marker or name");
     command.add_option_function<std::string>(
         "--vertex-sizes",
         [&size](const std::string& text) {

@@ -73,7 +73,7 @@ Json to_json(const MeshOptions& options) {
     json["edge_length"] = or_null(options.size.edge_length);
     json["max_volume"] = or_null(options.size.max_volume);
     json["entity_sizes"] = Json::array();
-    for (const EntitySize& size : options.size.entities) json["entity_sizes"].push_back({{"entity", to_string(size.kind)}, {"id", size.id}, {"edge_length", size.edge_length}});
+    for (const EntitySize& size : options.size.entities) json["entity_sizes"].push_back({{"entity", to_string(size.kind)}, {"id", size.name.empty() ? Json(size.id) : Json(size.name)}, {"edge_length", size.edge_length}});
     json["vertex_sizes"] = options.size.vertex_sizes ? "auto" : "off";
     json["per_local_feature_size"] = or_null(options.size.per_local_feature_size);
     json["elements_per_circle"] = or_null(options.size.elements_per_circle);

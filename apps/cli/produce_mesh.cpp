@@ -141,7 +141,7 @@ void add_job_flags(CLI::App& command, MeshJob& job) {
 }
 
 void add_background_flag(CLI::App& command, MeshJob& job) {
-    command.add_option("--background", job.background, "target edge lengths at the vertices of a mesh: .node/.ele with .mtr (default: none)")->type_name("FILE");
+    command.add_option("--background", job.background, "target edge lengths at the vertices of a mesh: .node/.ele with .mtr, .msh, .vtu (default: none)")->type_name("FILE");
 }
 
 void read_background(MeshJob& job) {

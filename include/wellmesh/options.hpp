@@ -66,6 +66,7 @@ struct EntitySize {
     EntityKind kind = EntityKind::region;  ///< region, facet, segment or vertex
     std::int32_t id = 0;                   ///< the region's id; the marker of facets, segments and vertices
     double edge_length = 0;                ///< input units, above 0
+    std::string name{};                    ///< one of Plc::names in place of the id; empty: the id counts
 };
 
 /// How large tetrahedra are to be. The smallest of all that is asked for at a place counts, and sizes grow with the distance from there by at most

@@ -21,6 +21,7 @@
 #include "predicates/predicates.hpp"
 #include "refinement/lattice_seeding.hpp"
 #include "refinement/refine.hpp"
+#include "sizing/entity_sizes.hpp"
 #include "strategies/sliver_strategies.hpp"
 #include "validation/valid_plc.hpp"
 #include "wellmesh/generate.hpp"
@@ -31,6 +32,12 @@ namespace {
 
 /// Of memory at the peak, which is in the certificate: 255 MB measured for 395 540 vertices of a cube.
 constexpr double kBytesPerVertex = 650;
+
+MeshOptions with_names_resolved(const MeshOptions& options, const Plc& plc) {
+    MeshOptions out = options;
+    out.size.entities = with_ids(options.size.entities, plc.names);
+    return out;
+}
 
 void check_vertex_sizes(const Plc& plc) {
     const std::vector<double>& sizes = plc.vertex_sizes;
@@ -46,7 +53,7 @@ class Generator {
 public:
     /// @param given  the mesh to start from; null: from the input's vertices alone.
     Generator(const Plc& plc, const TetMesh* given, const MeshOptions& options, const RunControl& control)
-        : plc_(plc), given_(given), options_(options), control_(control), guard_(options.limits, control) {}
+        : plc_(plc), given_(given), options_(with_names_resolved(options, plc)), control_(control), guard_(options.limits, control) {}
 
 private:
     template <class F>
@@ -298,7 +305,7 @@ private:
 
     const Plc& plc_;
     const TetMesh* given_;
-    const MeshOptions& options_;
+    const MeshOptions options_;
     const RunControl& control_;
     RunGuard guard_;
     MeshResult result_;

@@ -24,18 +24,18 @@ constexpr double kGenerousGrowth = 3;
 constexpr std::size_t kGenerousAllowance = 500;
 constexpr double kFlatVolume = 1e-10;  // of the cubed longest edge: dihedral angles of about 1e-8 degrees
 
-SizeFieldDomain sampled_domain(const ConformingMesh& mesh, RunGuard& guard) {
+SizeFieldDomain sampled_domain(const ConformingMesh& mesh, RunGuard& guard, const Limits& limits) {
     const auto cell_at = [&mesh, near = TetId{}](const Vec3& p) mutable {
         near = mesh.triangulation().locate(p, near);
         return mesh.tets().is_finite(near) ? mesh.cell(near) : CellId{0};
     };
-    return {cell_at, [&mesh, &guard] { return guard.poll(mesh.vertex_count(), mesh.tets().live(), 0) == RunGuard::Verdict::go_on; }};
+    return {cell_at, [&mesh, &guard] { return guard.poll(mesh.vertex_count(), mesh.tets().live(), 0) == RunGuard::Verdict::go_on; }, limits.max_vertices};
 }
 
 }  // namespace
 
 Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options)
-    : mesh_(mesh), boundary_(boundary), guard_(guard), exemptions_(mesh, boundary.acute()), sizes_(mesh.plc(), options.size, sampled_domain(mesh, guard)),
+    : mesh_(mesh), boundary_(boundary), guard_(guard), exemptions_(mesh, boundary.acute()), sizes_(mesh.plc(), options.size, sampled_domain(mesh, guard, options.limits)),
       max_radius_edge_(options.quality.max_radius_edge_ratio),
       max_vertices_(options.limits.max_vertices) {
     double largest = 0;

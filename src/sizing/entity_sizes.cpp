@@ -41,6 +41,28 @@ void apply(const EntitySize& wanted, std::vector<double>& sizes, const IdOf& id_
 
 }  // namespace
 
+std::vector<EntitySize> with_ids(const std::vector<EntitySize>& entities, const Names& names) {
+    std::vector<EntitySize> out;
+    for (const EntitySize& wanted : entities) {
+        if (wanted.name.empty()) {
+            out.push_back(wanted);
+            continue;
+        }
+        const std::size_t dimension = wanted.kind == EntityKind::region ? 3 : wanted.kind == EntityKind::facet ? 2 : wanted.kind == EntityKind::segment ? 1 : 0;
+        std::set<std::string> known;
+        const std::size_t before = out.size();
+        for (const auto& [marker, name] : names.of_dimension[dimension]) {
+            known.insert(name);
+            if (name == wanted.name) out.push_back({wanted.kind, marker, wanted.edge_length});
+        }
+        if (out.size() == before)
+            throw MeshError(ErrorCode::bad_options, Stage::refine,
+                            fmt::format("a size is asked for {} '{}', but the input has {}{}", to_string(wanted.kind), wanted.name,
+                                        known.empty() ? "no names of that kind" : "the names ", fmt::join(known, ", ")));
+    }
+    return out;
+}
+
 EntitySizes stated_sizes(const ValidPlc& plc, const SizeGoals& goals) {
     EntitySizes out{std::vector<double>(plc.vertices.size(), kInfinity), std::vector<double>(plc.segments.size(), kInfinity),
                     std::vector<double>(plc.facets.size(), kInfinity), std::vector<double>(plc.cells.size(), goals.edge_length.value_or(kInfinity))};

@@ -14,8 +14,12 @@ struct EntitySizes {
     std::vector<double> vertices, segments, facets, cells;
 };
 
+/// The same with ids for names: several, where several markers share the name.
+/// @throws MeshError{bad_options} for a name that nothing in the input has, naming those that there are
+[[nodiscard]] std::vector<EntitySize> with_ids(const std::vector<EntitySize>& entities, const Names& names);
+
 /// What `goals` state for vertices, segments, facets and regions, and for vertices the input itself.
-/// @throws MeshError{bad_options} for an id that nothing in the input has, naming those that there are
+/// @pre no entity is named: with_ids(). @throws MeshError{bad_options} for an id that nothing in the input has, naming those that there are
 [[nodiscard]] EntitySizes stated_sizes(const ValidPlc& plc, const SizeGoals& goals);
 
 /// Lowers the sizes of facets and segments to the length of which `elements` make a full circle of their own curvature.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "sizing/point_sizes.hpp"
 #include "validation/box_tree.hpp"
 
@@ -16,8 +18,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSteep = 0.88;
 /// Refinement makes about so many vertices a cubed circumradius bound.
 constexpr double kVerticesPerCubedRadius = 0.75;
-/// Leaves are about as many as an eighth of the vertices that they ask for, and cost less: a mesh that can't hold its vertices never uses more.
-constexpr std::size_t kMostLeaves = std::size_t{1} << 25;
+/// A leaf of twice the length asks for about 17 vertices, so these are for 70 million; half a gigabyte.
+constexpr std::size_t kMostLeaves = std::size_t{1} << 22U;
+/// Where vertices are limited: so many leaves find what is small, and one a vertex is more than enough.
+constexpr std::size_t kLeavesAnyway = 50'000;
 constexpr unsigned kLeastDepth = 2;
 /// A source that asks for hardly less than others do already is none.
 constexpr double kWorthKeeping = 0.01;
@@ -173,7 +177,14 @@ SizeField::SizeField(const ValidPlc& plc, const SizeGoals& goals, const SizeFiel
     const SampledDomain around = domain_of(plc);
     std::function<bool(const Vec3&)> inside;
     if (domain.cell_at) inside = [&](const Vec3& p) { return plc.cells[domain.cell_at(p).index()].filled; };
-    const auto may_go_on = [&](std::size_t leaves) { return leaves < kMostLeaves && (!domain.may_go_on || domain.may_go_on()); };
+    const std::uint64_t most_leaves = std::min<std::uint64_t>(kMostLeaves, domain.max_vertices ? kLeavesAnyway + *domain.max_vertices : kMostLeaves);
+    const auto may_go_on = [&](std::size_t leaves) {
+        if (leaves >= kMostLeaves && !domain.max_vertices)
+            throw MeshError(ErrorCode::mesh_too_large, Stage::refine,
+                            fmt::format("the sizes ask for too many vertices: above {:.2g} on part of the domain; ask for coarser ones, or set a limit on vertices",
+                                        17.0 * kMostLeaves));
+        return leaves < most_leaves && (!domain.may_go_on || domain.may_go_on());
+    };
     const unsigned depth = goals.at ? depth_of(kCallbackResolution) : kLeastDepth;
     if (point_sizes.asks() && goals.gradation > 0) {
         SteepPoints steep(f, point_sizes.probes(), goals.gradation);

@@ -12,6 +12,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/ids.hpp"
@@ -51,12 +52,14 @@ struct SizeFieldDomain {
     std::function<CellId(const Vec3&)> cell_at{};
     /// Asked now and then; false: the field may stay coarse. Empty: true.
     std::function<bool()> may_go_on{};
+    /// The mesh will be given up at so many, so the field may stay coarse beyond what they need.
+    std::optional<std::uint64_t> max_vertices{};
 };
 
 class SizeField {
 public:
     /// @throws MeshError{bad_options}: an id that the input lacks, a background mesh that isn't one, a callback's answer that is no length;
-    ///         whatever the callback throws. Deterministic if the callback is.
+    ///         MeshError{mesh_too_large}: far more vertices than a mesh can have; whatever the callback throws. Deterministic if the callback is.
     SizeField(const ValidPlc& plc, const SizeGoals& goals, const SizeFieldDomain& domain = {});
 
     /// Is it anything but constant in every cell?

@@ -32,7 +32,7 @@ double achieved(const json& report, const std::string& goal) {
 TEST(sizes, of_regions_facets_and_vertices_are_asked_and_achieved) {
     const ScratchFolder scratch;
     const RunOptions here = {.folder = scratch.path()};
-    scratch.write("boxes.poly", two_boxes());
+    (void)scratch.write("boxes.poly", two_boxes());
     const Outcome run = run_wellmesh({"mesh", "boxes.poly", "--size", "0.5", "--size-region", "2=0.12", "--size-facet", "3=0.1", "--size-vertex", "4=0.02", "--gradation", "0.4", "-o",
                                       "boxes.mesh", "--json", "report.json"}, here);
     ASSERT_EQ(run.status, 0) << run.out << run.err;
@@ -48,7 +48,7 @@ TEST(sizes, of_regions_facets_and_vertices_are_asked_and_achieved) {
 TEST(sizes, come_from_mtr_files_and_background_meshes) {
     const ScratchFolder scratch;
     const RunOptions here = {.folder = scratch.path()};
-    scratch.write("boxes.poly", two_boxes());
+    (void)scratch.write("boxes.poly", two_boxes());
     const auto tets = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments{"mesh", "boxes.poly", "-o", "boxes.mesh"};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -57,12 +57,12 @@ TEST(sizes, come_from_mtr_files_and_background_meshes) {
         return read_mesh(scratch.path() / "boxes.mesh").tets.size();
     };
     const std::size_t plain = tets({});
-    scratch.write("sizes.node", "4 3 0 0\n1 -1 -1 -1\n2 9 -1 -1\n3 -1 9 -1\n4 -1 -1 9\n");
-    scratch.write("sizes.ele", "1 4 0\n1 1 2 3 4\n");
-    scratch.write("sizes.mtr", "4 1\n0.15\n0.15\n0.15\n0.15\n");
+    (void)scratch.write("sizes.node", "4 3 0 0\n1 -1 -1 -1\n2 9 -1 -1\n3 -1 9 -1\n4 -1 -1 9\n");
+    (void)scratch.write("sizes.ele", "1 4 0\n1 1 2 3 4\n");
+    (void)scratch.write("sizes.mtr", "4 1\n0.15\n0.15\n0.15\n0.15\n");
     const std::size_t background = tets({"--background", "sizes.node"});
     EXPECT_GT(background, 5 * plain);
-    scratch.write("boxes.mtr", "12 1\n" + [] { std::string s; for (int i = 0; i < 12; ++i) s += "0.15\n"; return s; }());
+    (void)scratch.write("boxes.mtr", "12 1\n" + [] { std::string s; for (int i = 0; i < 12; ++i) s += "0.15\n"; return s; }());
     EXPECT_EQ(tets({}), background);
     EXPECT_EQ(tets({"--vertex-sizes", "off"}), plain);
     EXPECT_TRUE(contains(run_wellmesh({"mesh", "boxes.poly", "-o", "boxes.mesh"}, here).out, "sizes at its vertices"));
@@ -72,7 +72,7 @@ TEST(sizes, come_from_mtr_files_and_background_meshes) {
         EXPECT_EQ(run.status, 3);
         EXPECT_TRUE(contains(run.err, "would replace the input")) << run.err;
     }
-    scratch.write("sizes.mtr", "4 1\n0.15\n0.15\nx\n0.15\n");
+    (void)scratch.write("sizes.mtr", "4 1\n0.15\n0.15\nx\n0.15\n");
     const Outcome broken = run_wellmesh({"mesh", "boxes.poly", "--background", "sizes.node", "-o", "boxes.mesh"}, here);
     EXPECT_EQ(broken.status, 2);
     EXPECT_TRUE(contains(broken.err, "sizes.mtr:4")) << broken.err;
@@ -82,7 +82,7 @@ TEST(sizes, come_from_mtr_files_and_background_meshes) {
 TEST(sizes, by_features_and_curvature_are_options_and_off_is_a_gradation) {
     const ScratchFolder scratch;
     const RunOptions here = {.folder = scratch.path()};
-    scratch.write("boxes.poly", two_boxes());
+    (void)scratch.write("boxes.poly", two_boxes());
     const Outcome run = run_wellmesh({"mesh", "boxes.poly", "--lfs", "0.5", "--curvature", "24", "--min-size", "0.05", "--gradation", "off", "-o", "boxes.mesh", "--json", "-"}, here);
     ASSERT_EQ(run.status, 0) << run.err;
     const json report = json::parse(run.out);
@@ -96,9 +96,9 @@ TEST(sizes, by_features_and_curvature_are_options_and_off_is_a_gradation) {
 TEST(sizes, out_of_range_are_usage_errors_that_say_the_range) {
     const ScratchFolder scratch;
     const RunOptions here = {.folder = scratch.path()};
-    scratch.write("boxes.poly", two_boxes());
+    (void)scratch.write("boxes.poly", two_boxes());
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
-        {{"--size-region", "2"}, "ID=H"},           {{"--size-region", "2=0"}, "above 0"},      {{"--size-region", "x=1"}, "ID=H"},     {{"--size-region", "2=nan"}, "ID=H"},
+        {{"--size-region", "2"}, "ID=H"},           {{"--size-region", "2=0"}, "above 0"},      {{"--size-region", "x=1"}, "no names"},   {{"--size-region", "2=nan"}, "ID=H"},
         {{"--size-facet", "99=1"}, "the markers"},  {{"--size-region", "99=1"}, "regions 1, 2"}, {{"--size-segment", "5=1"}, "marker 5"}, {{"--gradation", "2"}, "between 0"},
         {{"--gradation", "-1"}, "between 0"},       {{"--gradation", "x"}, "number or off"},    {{"--lfs", "0"}, "above 0"},            {{"--curvature", "2"}, "at least 3"},
         {{"--min-size", "-1"}, "above 0"},          {{"--vertex-sizes", "on"}, "auto nor off"}, {{"--gradation", "off", "--size-vertex", "4=1"}, "gradation"}};

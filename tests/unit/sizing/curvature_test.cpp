@@ -78,8 +78,11 @@ TEST(Curvature, OfACylinderIsThatOfItsCircleHoweverItIsCutIntoFacets) {
             const EntitySizes sizes = curved(plc, 40);
             const double expected = 2 * kPi * radius / 40;
             for (std::size_t f = 0; f < plc.facets.size(); ++f) {
-                if (plc.facets[f].marker == 2) EXPECT_TRUE(std::isinf(sizes.facets[f]));  // the ends are flat, their outlines sharp
-                else EXPECT_NEAR(sizes.facets[f], expected, 0.01 * expected);
+                if (plc.facets[f].marker == 2) {
+                    EXPECT_TRUE(std::isinf(sizes.facets[f]));  // the ends are flat, their outlines sharp
+                } else {
+                    EXPECT_NEAR(sizes.facets[f], expected, 0.01 * expected);
+                }
             }
             std::size_t on_rims = 0;
             for (std::size_t s = 0; s < plc.segments.size(); ++s) {

