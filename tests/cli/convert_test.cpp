@@ -59,7 +59,7 @@ TEST(region_flags, name_the_cells_of_a_surface) {
 TEST(convert_command, meshes_and_complexes) {
     const ScratchFolder scratch;
     const RunOptions here{.folder = scratch.path()};
-    scratch.write("tower.off", kTower);
+    (void)scratch.write("tower.off", kTower);
     ASSERT_EQ(run_wellmesh({"mesh", "tower.off", "--min-dihedral", "0", "--quiet", "-o", "a.mesh"}, here).status, 0);
     const TetMesh mesh = read_mesh(scratch.file("a.mesh"));
     // Once around all formats of meshes; .inp is written alone.
@@ -95,8 +95,8 @@ TEST(convert_command, meshes_and_complexes) {
 TEST(convert_command, says_what_is_lost_and_what_is_wrong) {
     const ScratchFolder scratch;
     const RunOptions here{.folder = scratch.path()};
-    scratch.write("tower.off", kTower);
-    scratch.write("named.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng floor\nf 1 3 2\ng walls\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    (void)scratch.write("tower.off", kTower);
+    (void)scratch.write("named.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng floor\nf 1 3 2\ng walls\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
     const Outcome lossy = run_wellmesh({"convert", "named.obj", "a.off"}, here);
     EXPECT_EQ(lossy.status, 0);
     EXPECT_TRUE(contains(lossy.out, ".off can't carry the 2 markers of facets")) << lossy.out;
