@@ -24,8 +24,11 @@ Plc furnished() {
     };
     plc.facets.push_back({{{vertex(0.3, 0.3, 0.3), vertex(0.7, 0.3, 0.3), vertex(0.7, 0.7, 0.3), vertex(0.3, 0.7, 0.3)}}, {}, 70});  // open, inside
     plc.facets.push_back({{{vertex(1.3, 0.4, 0), vertex(1.7, 0.4, 0), vertex(1.7, 0.4, 0.4), vertex(1.3, 0.4, 0.4)}}, {}, 71});      // stands on the floor
+    const std::vector<std::uint32_t>& fin = plc.facets.back().polygons[0];
+    plc.facets[8].polygons.push_back({fin[0], fin[1]});  // the floor knows where
     plc.segments.push_back({{vertex(1.3, 0.7, 0.6), vertex(1.7, 0.7, 0.6)}, 80});
     plc.segments.push_back({{vertex(0.5, 0.5, 1), vertex(0.5, 0.5, 0.7)}, 81});  // from the ceiling
+    plc.facets[9].polygons.push_back({plc.segments.back().vertices[0]});
     const std::uint32_t lone = vertex(1.5, 0.2, 0.8);
     plc.vertex_markers.assign(plc.vertices.size(), 0);
     plc.vertex_markers[lone] = 90;
