@@ -154,6 +154,11 @@ std::vector<Value> VtkXml::values(pugi::xml_node array, TextPrecision* precision
         for (std::size_t at = 0; at < bytes.size(); at += sizeof(Stored)) out.push_back(static_cast<Value>(load<Stored>(bytes, at, order_)));
     };
     if (!with_type(type, convert)) fail(array, fmt::format("the array '{}' has the type {}, which is not read", name, quoted_token(type)));
+    if constexpr (std::is_floating_point_v<Value>) {
+        if (precision != nullptr)
+            for (const Value value : out)
+                if (std::isfinite(value)) precision->note(value);
+    }
     return out;
 }
 

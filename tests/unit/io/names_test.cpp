@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names, markers and numbers of entities through every format, as far as it carries them; and what it is said not to carry.
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <tuple>
 
@@ -202,6 +203,18 @@ TEST(ComplexNames, SurfacesKeepTheirRule) {
         EXPECT_EQ(back.fill, FillRule::nonzero_winding) << name;
         EXPECT_EQ(back.vertices.size(), 8U) << name;
         for (const PlcFacet& f : back.facets) EXPECT_EQ(f.marker, 0) << name;
+    }
+}
+
+TEST(ComplexNames, LostDigitsStayKnown) {
+    const TemporaryDirectory directory;
+    testing::Surface quads = testing::sample_surface();
+    for (Vec3& p : quads.vertices) p = {std::round(p.x * 1e5) / 1e5, std::round(p.y * 1e5) / 1e5, std::round(p.z * 1e5) / 1e5};
+    const Plc plc = read_plc(directory.write("a.off", testing::off_text(quads)));
+    ASSERT_GT(plc.relative_rounding, 1e-7);
+    for (const char* name : {"b.obj", "b.mesh", "b.msh", "b.vtp"}) {
+        write_plc(plc, directory / name);
+        EXPECT_EQ(read_plc(directory / name).relative_rounding, plc.relative_rounding) << name;
     }
 }
 
