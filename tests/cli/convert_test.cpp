@@ -26,8 +26,8 @@ json report_of(const std::string& path) { return json::parse(read_text(path)); }
 TEST(region_flags, name_the_cells_of_a_surface) {
     const ScratchFolder scratch;
     const std::string tower = scratch.write("tower.off", kTower);
-    const Outcome run = run_wellmesh({"mesh", tower, "--region-at", "0.5,0.5,0.5=base of it", "--region-at", "0.5,0.5,+1.5=7", "--min-dihedral", "0", "-o", scratch.file("t.msh"), "-o",
-                                      scratch.file("t.vtu"), "--json", scratch.file("r.json")});
+    const Outcome run = run_wellmesh({"mesh", tower, "--region-at", "0.5,0.5,0.5=base of it", "--region-at", "0.5,0.5,+1.5=7", "--min-dihedral", "0",
+                                      "-o", scratch.file("t.msh"), "-o", scratch.file("t.vtu"), "--json", scratch.file("r.json")});
     ASSERT_EQ(run.status, 0) << run.out << run.err;
     EXPECT_TRUE(contains(run.out, "base of it"));
     const TetMesh mesh = read_mesh(scratch.file("t.msh"));
@@ -44,7 +44,8 @@ TEST(region_flags, name_the_cells_of_a_surface) {
     const Outcome doctor = run_wellmesh({"doctor", tower, "--hole-at", "0.5,0.5,1.5", "--json", scratch.file("d.json")});
     EXPECT_EQ(doctor.status, 0) << doctor.out;
     EXPECT_EQ(report_of(scratch.file("d.json")).at("cells")[2].at("filled"), false);
-    const Outcome conflict = run_wellmesh({"mesh", tower, "--region-at", "0.5,0.5,0.5=a", "--region-at", "0.2,0.5,0.5=b", "-o", scratch.file("x.msh")});
+    const Outcome conflict =
+        run_wellmesh({"mesh", tower, "--region-at", "0.5,0.5,0.5=a", "--region-at", "0.2,0.5,0.5=b", "-o", scratch.file("x.msh")});
     EXPECT_EQ(conflict.status, 2);
     EXPECT_TRUE(contains(conflict.err, "lie in one cell")) << conflict.err;
     EXPECT_TRUE(contains(conflict.err, "(0.2, 0.5, 0.5)")) << conflict.err;
