@@ -43,7 +43,8 @@ int run(const ConvertCommand& arguments, Interrupt& interrupt) {
     const std::string extension = lower_extension(arguments.output);
     if (!has(kComplexOnly, extension) && !has(kBoth, extension) && !has(kMeshOnly, extension))
         throw MeshError(ErrorCode::bad_options, Stage::write,
-                        fmt::format("{}: unknown format '{}'; known are .poly .smesh .off .stl .obj .ply .vtp for complexes, .vtu .inp .node .ele for meshes, .mesh .msh for both",
+                        fmt::format("{}: unknown format '{}'; known are .poly .smesh .off .stl .obj .ply .vtp for complexes, .vtu .inp .node .ele "
+                                    "for meshes, .mesh .msh for both",
                                     arguments.output, extension));
     require_outputs({arguments.output}, {arguments.input});
     require_report("--json", arguments.json, {arguments.input, arguments.output});
@@ -75,10 +76,11 @@ int run(const ConvertCommand& arguments, Interrupt& interrupt) {
         write_json(arguments.json, json);
     }
     if (!arguments.quiet) {
-        std::string text =
-            as_mesh ? fmt::format("mesh: {} vertices, {} tetrahedra, {} subfaces, {} subsegments\n", mesh.vertices.size(), mesh.tets.size(), mesh.subfaces.size(), mesh.subsegments.size())
-                    : fmt::format("complex: {} vertices, {} facets, {} segments, {} region seeds, {} hole seeds\n", plc.vertices.size(), plc.facets.size(), plc.segments.size(),
-                                  plc.region_seeds.size(), plc.hole_seeds.size());
+        std::string text = as_mesh
+                               ? fmt::format("mesh: {} vertices, {} tetrahedra, {} subfaces, {} subsegments\n", mesh.vertices.size(),
+                                             mesh.tets.size(), mesh.subfaces.size(), mesh.subsegments.size())
+                               : fmt::format("complex: {} vertices, {} facets, {} segments, {} region seeds, {} hole seeds\n", plc.vertices.size(),
+                                             plc.facets.size(), plc.segments.size(), plc.region_seeds.size(), plc.hole_seeds.size());
         for (const std::string& loss : lost) text += "note: " + loss + '\n';
         for (const auto& file : files) text += "wrote " + file.string() + '\n';
         print_report(text, arguments.json);
@@ -91,8 +93,13 @@ int run(const ConvertCommand& arguments, Interrupt& interrupt) {
 void add_convert_command(CLI::App& program, Command& selected) {
     CLI::App& command = *program.add_subcommand("convert", "write a complex or a mesh in another format, and say what that format can't carry");
     auto arguments = std::make_shared<ConvertCommand>();
-    command.add_option("INPUT", arguments->input, "complex: .poly .smesh .off .stl .obj .ply .mesh .msh .vtp .vtu; mesh: .mesh .msh .vtu .node/.ele")->required()->type_name("");
-    command.add_option("OUTPUT", arguments->output, "complex: .poly .smesh .off .stl .obj .ply .mesh .msh .vtp; mesh: .mesh .msh .vtu .inp .node/.ele")->required()->type_name("");
+    command.add_option("INPUT", arguments->input, "complex: .poly .smesh .off .stl .obj .ply .mesh .msh .vtp .vtu; mesh: .mesh .msh .vtu .node/.ele")
+        ->required()
+        ->type_name("");
+    command
+        .add_option("OUTPUT", arguments->output, "complex: .poly .smesh .off .stl .obj .ply .mesh .msh .vtp; mesh: .mesh .msh .vtu .inp .node/.ele")
+        ->required()
+        ->type_name("");
     command.add_flag("--complex", arguments->as_complex, "of a mesh take its faces, edges and points alone, as a complex");
     command.add_flag("--binary", arguments->write.binary_stl, "write .stl as binary (float32)");
     add_write_flags(command, arguments->write);

@@ -64,7 +64,10 @@ void add_seed_point_flags(CLI::App& command, SeedFlags& seeds) {
                 for (const std::string& text : texts) seeds.regions.push_back(read_region(text, kRegion));
             },
             "the cell around this point is the region of that name, or number; may be given several times")
-        ->type_name("X,Y,Z=NAME")->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        ->type_name("X,Y,Z=NAME")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     command
         .add_option_function<std::vector<std::string>>(
             kHole,
@@ -72,7 +75,10 @@ void add_seed_point_flags(CLI::App& command, SeedFlags& seeds) {
                 for (const std::string& text : texts) seeds.holes.push_back(read_point(text, kHole, "X,Y,Z"));
             },
             "the cell around this point is not meshed; may be given several times")
-        ->type_name("X,Y,Z")->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        ->type_name("X,Y,Z")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void add_seeds(const SeedFlags& seeds, Plc& plc) {

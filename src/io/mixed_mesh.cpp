@@ -79,7 +79,8 @@ void resolve_generated_names(MixedMesh& mesh) {
             at = is_marker || is_entity ? names.erase(at) : std::next(at);
         }
         // A file that names some of its groups itself has numbers of its own, which those of the generated names must not meet.
-        const bool clash = std::any_of(marker.begin(), marker.end(), [&](const auto& m) { return names.contains(m.second) && !marker.contains(m.second); });
+        const bool clash =
+            std::any_of(marker.begin(), marker.end(), [&](const auto& m) { return names.contains(m.second) && !marker.contains(m.second); });
         if (clash || (marker.empty() && entity.empty())) continue;
         if (dimension == 0) rename(mesh.vertices, marker, entity);
         if (dimension == 1) rename(mesh.lines, marker, entity);
@@ -95,7 +96,9 @@ bool resolve_generated_names(Plc& plc) {
         auto& names = plc.names.of_dimension[dimension];
         for (const auto& [key, name] : names)
             if (const auto number = number_after(kMarkerPrefix[dimension], name)) marker[key] = *number;
-        if (marker.empty() || std::any_of(marker.begin(), marker.end(), [&](const auto& m) { return names.contains(m.second) && !marker.contains(m.second); })) continue;
+        if (marker.empty() ||
+            std::any_of(marker.begin(), marker.end(), [&](const auto& m) { return names.contains(m.second) && !marker.contains(m.second); }))
+            continue;
         any = true;
         for (const auto& [key, number] : marker) names.erase(key);
         const auto rename_all = [&](auto& cells) {
@@ -111,7 +114,8 @@ bool resolve_generated_names(Plc& plc) {
 TetMesh to_tet_mesh(MixedMesh mesh, const SourceFile& source) {
     if (mesh.tets.corners.empty()) fail_in_file(source, "the file has no tetrahedra");
     if (!mesh.polygons.corners.empty())
-        fail_in_file(source, fmt::format("the file has {} faces of more than three corners; a tetrahedral mesh has triangles alone", mesh.polygons.corners.size()));
+        fail_in_file(source, fmt::format("the file has {} faces of more than three corners; a tetrahedral mesh has triangles alone",
+                                         mesh.polygons.corners.size()));
     TetMesh out;
     out.vertex_markers = vertex_markers(mesh);
     out.vertices = std::move(mesh.points);
@@ -148,7 +152,8 @@ bool is_oriented_closed_surface(const std::vector<PlcFacet>& facets) {
 }
 
 Plc to_plc(MixedMesh mesh, const SourceFile& source) {
-    if (mesh.triangles.corners.empty() && mesh.polygons.corners.empty()) fail_in_file(source, "the file has neither triangles nor other faces: it holds no surface");
+    if (mesh.triangles.corners.empty() && mesh.polygons.corners.empty())
+        fail_in_file(source, "the file has neither triangles nor other faces: it holds no surface");
     const bool marked = any_marked(mesh.triangles.markers) || any_marked(mesh.polygons.markers);
     mark_by_entity(mesh.triangles, marked);
     mark_by_entity(mesh.polygons, marked);

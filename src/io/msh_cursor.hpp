@@ -48,9 +48,13 @@ public:
         if (!binary_) return in_.real(what);
         return checked(bytes<double>(what), what);
     }
-    /// As real(), but notes how precise the text is.
+    /// As real(), but notes how precise it is.
     double coordinate(TextPrecision& precision) {
-        if (binary_) return checked(bytes<double>("a coordinate"), "a coordinate");
+        if (binary_) {
+            const double value = checked(bytes<double>("a coordinate"), "a coordinate");
+            precision.note(value);
+            return value;
+        }
         const std::string_view token = in_.next();
         const double value = in_.to_real(token, "a coordinate");
         precision.note(token, value);

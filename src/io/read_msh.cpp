@@ -76,10 +76,12 @@ private:
         const std::string_view version = text.next();
         four_ = version == "4.1";
         if (!four_ && version != "2.2" && version != "2.1" && version != "2" && version != "2.0")
-            text.fail(fmt::format("version {} of the format is not read, only 4.1 and 2.2; Gmsh writes them with -format msh41 or msh22", quoted_token(version)));
+            text.fail(fmt::format("version {} of the format is not read, only 4.1 and 2.2; Gmsh writes them with -format msh41 or msh22",
+                                  quoted_token(version)));
         const std::int64_t type = text.integer("the file type (0 text, 1 binary)");
         if (type != 0 && type != 1) text.fail(fmt::format("the file type is 0 or 1, not {}", type));
-        if (const std::int64_t size = text.integer("the size of a real"); size != 8) text.fail(fmt::format("reals of {} bytes are not read, only those of 8", size));
+        if (const std::int64_t size = text.integer("the size of a real"); size != 8)
+            text.fail(fmt::format("reals of {} bytes are not read, only those of 8", size));
         if (type == 1) {
             in_.set_binary(std::endian::native);
             in_.begin_data();
@@ -243,7 +245,8 @@ private:
         points.reserve(order.size());
         index_of_.reserve(order.size());
         for (const std::size_t i : order) {
-            if (!index_of_.emplace(tags_[i], static_cast<std::uint32_t>(points.size())).second) in_.fail(fmt::format("node {} is given twice", tags_[i]));
+            if (!index_of_.emplace(tags_[i], static_cast<std::uint32_t>(points.size())).second)
+                in_.fail(fmt::format("node {} is given twice", tags_[i]));
             points.push_back(out_.points[i]);
         }
         out_.points = std::move(points);
@@ -251,7 +254,8 @@ private:
 
     std::uint32_t index_of(std::int64_t tag) const {
         if (sequential_) {
-            if (tag < 1 || static_cast<std::uint64_t>(tag) > out_.points.size()) in_.fail(fmt::format("node {} does not exist; the file has nodes 1 to {}", tag, out_.points.size()));
+            if (tag < 1 || static_cast<std::uint64_t>(tag) > out_.points.size())
+                in_.fail(fmt::format("node {} does not exist; the file has nodes 1 to {}", tag, out_.points.size()));
             return static_cast<std::uint32_t>(tag - 1);
         }
         const auto at = index_of_.find(tag);
@@ -265,10 +269,13 @@ private:
             if (known.type != type) continue;
             const bool linear = type <= 4 || type == 15;
             if (!linear && !(as_surface_ && known.dimension == 3))
-                in_.fail(fmt::format("element {} is a {}; only points, lines, triangles, quadrilaterals and tetrahedra of first order are read", element, known.name));
+                in_.fail(fmt::format("element {} is a {}; only points, lines, triangles, quadrilaterals and tetrahedra of first order are read",
+                                     element, known.name));
             return &known;
         }
-        in_.fail(fmt::format("element {} has Gmsh's type {}, which is not read; only points, lines, triangles, quadrilaterals and tetrahedra of first order are", element, type));
+        in_.fail(fmt::format(
+            "element {} has Gmsh's type {}, which is not read; only points, lines, triangles, quadrilaterals and tetrahedra of first order are",
+            element, type));
     }
 
     template <bool kWide>
@@ -285,12 +292,18 @@ private:
             last_marker_ = marker;
         }
         switch (type.type) {
-            case 15: return out_.vertices.add({c[0]}, marker, entity);
-            case 1: return out_.lines.add({c[0], c[1]}, marker, entity);
-            case 2: return out_.triangles.add({c[0], c[1], c[2]}, marker, entity);
-            case 3: return out_.polygons.add({c.begin(), c.end()}, marker, entity);
-            case 4: return out_.tets.add(c, marker, entity);
-            default: return;  // passed over
+            case 15:
+                return out_.vertices.add({c[0]}, marker, entity);
+            case 1:
+                return out_.lines.add({c[0], c[1]}, marker, entity);
+            case 2:
+                return out_.triangles.add({c[0], c[1], c[2]}, marker, entity);
+            case 3:
+                return out_.polygons.add({c.begin(), c.end()}, marker, entity);
+            case 4:
+                return out_.tets.add(c, marker, entity);
+            default:
+                return;  // passed over
         }
     }
 
@@ -308,7 +321,8 @@ private:
             const std::int64_t type_number = in_.integer("the type of an element");
             const std::int64_t follow = in_.binary() ? in_.integer("the number of elements of a block") : 1;
             const std::int64_t tag_count = in_.integer("the number of tags");
-            if (follow < 1 || static_cast<std::uint64_t>(follow) > count - i) in_.fail(fmt::format("a block of {} elements, of which {} are left", follow, count - i));
+            if (follow < 1 || static_cast<std::uint64_t>(follow) > count - i)
+                in_.fail(fmt::format("a block of {} elements, of which {} are left", follow, count - i));
             const std::size_t tags = in_.count(tag_count, "the number of tags", 2, 4);
             for (std::int64_t e = 0; e < follow; ++e, ++i) {
                 if (in_.binary()) number = in_.integer("the number of an element");
@@ -331,7 +345,8 @@ private:
         const std::size_t blocks = in_.count(block_count, "the number of blocks", 8, 3 * 4 + 8);
         std::int64_t read = 0;
         for (std::size_t b = 0; b < blocks; ++b) {
-            const std::int64_t dimension = in_.integer("the dimension of a block"), entity = in_.integer("the entity of a block"), type_number = in_.integer("the type of the elements");
+            const std::int64_t dimension = in_.integer("the dimension of a block"), entity = in_.integer("the entity of a block"),
+                               type_number = in_.integer("the type of the elements");
             if (dimension < 0 || dimension > 3) in_.fail(fmt::format("the dimension of a block is 0 to 3, not {}", dimension));
             const std::size_t count = in_.count(in_.size("the number of elements of a block"), "the number of elements of a block", 4, 8 + 8);
             const auto& groups = group_of_[static_cast<std::size_t>(dimension)];
@@ -392,7 +407,7 @@ private:
     LastElement last_;
     std::int32_t last_marker_ = 0;
     std::vector<std::int64_t> tags_;
-    std::unordered_map<std::int64_t, std::uint32_t> index_of_;  // only looked up; empty if sequential
+    std::unordered_map<std::int64_t, std::uint32_t> index_of_;      // only looked up; empty if sequential
     std::array<std::map<std::int64_t, std::int32_t>, 4> group_of_;  // first physical group of each entity, by dimension
     MixedMesh out_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// VTK's XML files: .vtu with cells of first order, .vtp with vertices, lines and polygons; all encodings, several pieces. A cell's marker is in the array
-// `marker` (`region` for tetrahedra), the part that it belongs to in `entity`; what Gmsh's and MEDIT's files become in meshio's hands is understood, too.
-// Field data of pairs (marker, dimension) are names.
+// VTK's XML files: .vtu with cells of first order, .vtp with vertices, lines and polygons; all encodings, several pieces. A cell's marker is in the
+// array `marker` (`region` for tetrahedra), the part that it belongs to in `entity`; what Gmsh's and MEDIT's files become in meshio's hands is
+// understood, too. Field data of pairs (marker, dimension) are names.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -78,7 +78,9 @@ private:
         }
     }
 
-    static bool fits(std::int64_t value) { return value >= std::numeric_limits<std::int32_t>::min() && value <= std::numeric_limits<std::int32_t>::max(); }
+    static bool fits(std::int64_t value) {
+        return value >= std::numeric_limits<std::int32_t>::min() && value <= std::numeric_limits<std::int32_t>::max();
+    }
 
     void read_points(pugi::xml_node piece) {
         const std::size_t count = xml_.count(piece, "NumberOfPoints");
@@ -93,7 +95,8 @@ private:
         single_precision_ = single_precision_ || std::string_view(array.attribute("type").value()) == "Float32";
         out_.points.reserve(out_.points.size() + count);
         for (std::size_t i = 0; i < count; ++i) {
-            if (!std::isfinite(c[3 * i]) || !std::isfinite(c[3 * i + 1]) || !std::isfinite(c[3 * i + 2])) xml_.fail(array, fmt::format("point {} (from 0) is not finite", i));
+            if (!std::isfinite(c[3 * i]) || !std::isfinite(c[3 * i + 1]) || !std::isfinite(c[3 * i + 2]))
+                xml_.fail(array, fmt::format("point {} (from 0) is not finite", i));
             out_.points.push_back({c[3 * i], c[3 * i + 1], c[3 * i + 2]});
         }
     }
@@ -106,7 +109,8 @@ private:
             if (!array || array.attribute("NumberOfComponents").as_int(1) != 1) continue;
             std::vector<std::int64_t> values;
             if (std::string_view(array.attribute("type").value()).starts_with("Float")) {
-                for (const double value : xml_.reals(array)) values.push_back(value == std::trunc(value) && std::abs(value) < 1e9 ? static_cast<std::int64_t>(value) : 0);
+                for (const double value : xml_.reals(array))
+                    values.push_back(value == std::trunc(value) && std::abs(value) < 1e9 ? static_cast<std::int64_t>(value) : 0);
             } else {
                 values = xml_.integers(array);
             }
@@ -120,7 +124,9 @@ private:
 
     struct CellData {
         std::vector<std::int64_t> markers, regions, entities;
-        static std::int32_t at(const std::vector<std::int64_t>& values, std::size_t cell) { return values.empty() ? 0 : static_cast<std::int32_t>(values[cell]); }
+        static std::int32_t at(const std::vector<std::int64_t>& values, std::size_t cell) {
+            return values.empty() ? 0 : static_cast<std::int32_t>(values[cell]);
+        }
     };
     CellData read_cell_data(pugi::xml_node piece, std::size_t cells) {
         return {cell_data(piece, kMarkerArrays, cells), cell_data(piece, kRegionArrays, cells), cell_data(piece, kEntityArrays, cells)};
@@ -138,7 +144,8 @@ private:
         out.reserve(cells);
         std::int64_t at = 0;
         for (std::size_t c = 0; c < cells; ++c) {
-            if (ends[c] < at || static_cast<std::uint64_t>(ends[c]) > numbers.size()) xml_.fail(offsets, fmt::format("cell {} (from 0) ends at {}, which is out of range", c, ends[c]));
+            if (ends[c] < at || static_cast<std::uint64_t>(ends[c]) > numbers.size())
+                xml_.fail(offsets, fmt::format("cell {} (from 0) ends at {}, which is out of range", c, ends[c]));
             auto& cell = out.emplace_back();
             cell.reserve(static_cast<std::size_t>(ends[c] - at));
             for (; at < ends[c]; ++at) {
@@ -170,7 +177,8 @@ private:
             if (!right) xml_.fail(where, fmt::format("cell {} (from 0) of VTK's type {} has {} points", cell, type, c.size()));
         };
         switch (type) {
-            case 0: return;  // empty
+            case 0:
+                return;  // empty
             case 1:
             case 2:
                 for (const std::uint32_t v : c) out_.vertices.add({v}, marker, entity);
@@ -180,15 +188,24 @@ private:
                 need(c.size() >= 2 && (type == 4 || c.size() == 2));
                 for (std::size_t i = 1; i < c.size(); ++i) out_.lines.add({c[i - 1], c[i]}, marker, entity);
                 return;
-            case 5: need(c.size() == 3); break;
-            case 7: need(c.size() >= 3); break;
+            case 5:
+                need(c.size() == 3);
+                break;
+            case 7:
+                need(c.size() >= 3);
+                break;
             case 8:
                 need(c.size() == 4);
                 std::swap(c[2], c[3]);  // a pixel's corners come row by row
                 break;
-            case 9: need(c.size() == 4); break;
-            case 10: need(c.size() == 4); return out_.tets.add({c[0], c[1], c[2], c[3]}, CellData::at(data.regions, cell), entity);
-            default: return refuse(where, cell, type);
+            case 9:
+                need(c.size() == 4);
+                break;
+            case 10:
+                need(c.size() == 4);
+                return out_.tets.add({c[0], c[1], c[2], c[3]}, CellData::at(data.regions, cell), entity);
+            default:
+                return refuse(where, cell, type);
         }
         if (c.size() == 3) out_.triangles.add({c[0], c[1], c[2]}, marker, entity);
         else out_.polygons.add(std::move(c), marker, entity);
@@ -240,7 +257,8 @@ private:
         if (std::string_view(array.attribute("type").value()).starts_with("Float")) return;
         const std::vector<std::int64_t> markers = xml_.integers(array);
         for (std::size_t v = 0; v < std::min(count, markers.size()); ++v)
-            if (markers[v] != 0 && fits(markers[v])) out_.vertices.add({static_cast<std::uint32_t>(first_point_ + v)}, static_cast<std::int32_t>(markers[v]), 0);
+            if (markers[v] != 0 && fits(markers[v]))
+                out_.vertices.add({static_cast<std::uint32_t>(first_point_ + v)}, static_cast<std::int32_t>(markers[v]), 0);
     }
 
     const SourceFile& source_;
@@ -259,8 +277,10 @@ void add_boundary(MixedMesh& mesh, const SourceFile& source) {
     const std::vector<std::int64_t>& vertex = reader.mesh_vertices();
     if (vertex.size() != boundary.points.size()) fail_in_file(source, "the file has no point data 'mesh_vertex', one number a point");
     for (std::size_t i = 0; i < vertex.size(); ++i)
-        if (vertex[i] < 0 || static_cast<std::uint64_t>(vertex[i]) >= mesh.points.size() || !(mesh.points[static_cast<std::size_t>(vertex[i])] == boundary.points[i]))
-            fail_in_file(source, fmt::format("point {} (from 0) is not vertex {} of the mesh beside: the two files belong to different meshes", i, vertex[i]));
+        if (vertex[i] < 0 || static_cast<std::uint64_t>(vertex[i]) >= mesh.points.size() ||
+            !(mesh.points[static_cast<std::size_t>(vertex[i])] == boundary.points[i]))
+            fail_in_file(
+                source, fmt::format("point {} (from 0) is not vertex {} of the mesh beside: the two files belong to different meshes", i, vertex[i]));
     const auto move_cells = [&](auto& from, auto& to) {
         for (std::size_t i = 0; i < from.corners.size(); ++i) {
             for (std::uint32_t& v : from.corners[i]) v = static_cast<std::uint32_t>(vertex[v]);

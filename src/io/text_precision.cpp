@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <string>
 
 #include <fmt/format.h>
@@ -95,6 +96,16 @@ void TextPrecision::note(std::string_view token, double value) {
     if (is_exact(text)) return;
     digits_ = std::max(digits_, text.significant);
     largest_inexact_ = std::max(largest_inexact_, magnitude);
+}
+
+void TextPrecision::note(double value) {
+    if (!all_float32_ && digits_ >= kDoubleDigits) {  // nothing can change but the largest
+        largest_ = std::max(largest_, std::abs(value));
+        return;
+    }
+    fmt::memory_buffer text;
+    fmt::format_to(std::back_inserter(text), "{}", value);
+    note(std::string_view(text.data(), text.size()), value);
 }
 
 double TextPrecision::relative_rounding() const {

@@ -24,6 +24,8 @@ class TextPrecision {
 public:
     /// @param token  decimal text that parse_real() accepted as `value`.
     void note(std::string_view token, double value);
+    /// A coordinate of a binary file: its shortest text is what a program that lost digits would have written.
+    void note(double value);
     [[nodiscard]] double relative_rounding() const;
 
 private:

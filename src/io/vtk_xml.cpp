@@ -78,10 +78,12 @@ VtkXml::VtkXml(const SourceFile& source, const char* type) : source_(source) {
         text = bytes;
     }
     const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size(), pugi::parse_default);
-    if (!parsed) fail_at_line(source, line_of(source, static_cast<std::size_t>(parsed.offset)), fmt::format("this is no XML: {}", parsed.description()));
+    if (!parsed)
+        fail_at_line(source, line_of(source, static_cast<std::size_t>(parsed.offset)), fmt::format("this is no XML: {}", parsed.description()));
     const pugi::xml_node root = document_.child("VTKFile");
     if (!root) fail_in_file(source, "the file has no element <VTKFile>");
-    if (const std::string_view is = root.attribute("type").value(); is != type) fail(root, fmt::format("the file's type is {}, expected '{}'", quoted_token(is), type));
+    if (const std::string_view is = root.attribute("type").value(); is != type)
+        fail(root, fmt::format("the file's type is {}, expected '{}'", quoted_token(is), type));
     grid_ = root.child(type);
     if (!grid_) fail(root, fmt::format("the file has no element <{}>", type));
     order_ = std::string_view(root.attribute("byte_order").as_string("LittleEndian")) == "BigEndian" ? std::endian::big : std::endian::little;
@@ -92,7 +94,8 @@ VtkXml::VtkXml(const SourceFile& source, const char* type) : source_(source) {
     compressed_ = !compressor.empty();
     const pugi::xml_node appended = root.child("AppendedData");
     const std::string_view encoding = appended.attribute("encoding").as_string("base64");
-    if (appended && encoding != "base64" && encoding != "raw") fail(appended, fmt::format("the encoding {} of appended data is unknown", quoted_token(encoding)));
+    if (appended && encoding != "base64" && encoding != "raw")
+        fail(appended, fmt::format("the encoding {} of appended data is unknown", quoted_token(encoding)));
     appended_base64_ = encoding == "base64";
 }
 
@@ -109,7 +112,8 @@ pugi::xml_node VtkXml::find_array(pugi::xml_node parent, const char* name) {
 std::size_t VtkXml::count(pugi::xml_node node, const char* attribute) const {
     const pugi::xml_attribute a = node.attribute(attribute);
     const auto value = parse_integer(a.value());
-    if (!a || !value || *value < 0) fail(node, fmt::format("expected a number in the attribute {} of <{}>, found {}", attribute, node.name(), quoted_token(a.value())));
+    if (!a || !value || *value < 0)
+        fail(node, fmt::format("expected a number in the attribute {} of <{}>, found {}", attribute, node.name(), quoted_token(a.value())));
     if (static_cast<std::uint64_t>(*value) > kMostExpansion * source_.bytes.size())
         fail(node, fmt::format("{} is stated as {}, more than the file can hold", attribute, *value));
     return static_cast<std::size_t>(*value);
@@ -148,12 +152,19 @@ std::vector<Value> VtkXml::values(pugi::xml_node array, TextPrecision* precision
     const std::string bytes = binary(array);
     const auto convert = [&](auto sample) {
         using Stored = decltype(sample);
-        if (bytes.size() % sizeof(Stored) != 0) fail(array, fmt::format("the array '{}' has {} bytes, no multiple of {}", name, bytes.size(), sizeof(Stored)));
-        if (std::is_integral_v<Value> && !std::is_integral_v<Stored>) fail(array, fmt::format("the array '{}' has the type {}, expected integers", name, quoted_token(type)));
+        if (bytes.size() % sizeof(Stored) != 0)
+            fail(array, fmt::format("the array '{}' has {} bytes, no multiple of {}", name, bytes.size(), sizeof(Stored)));
+        if (std::is_integral_v<Value> && !std::is_integral_v<Stored>)
+            fail(array, fmt::format("the array '{}' has the type {}, expected integers", name, quoted_token(type)));
         out.reserve(bytes.size() / sizeof(Stored));
         for (std::size_t at = 0; at < bytes.size(); at += sizeof(Stored)) out.push_back(static_cast<Value>(load<Stored>(bytes, at, order_)));
     };
     if (!with_type(type, convert)) fail(array, fmt::format("the array '{}' has the type {}, which is not read", name, quoted_token(type)));
+    if constexpr (std::is_floating_point_v<Value>) {
+        if (precision != nullptr)
+            for (const Value value : out)
+                if (std::isfinite(value)) precision->note(value);
+    }
     return out;
 }
 
@@ -168,7 +179,8 @@ std::string VtkXml::binary(pugi::xml_node array) const {
     } else if (format == "appended") {
         const auto offset = parse_integer(array.attribute("offset").value());
         if (!offset || *offset < 0 || static_cast<std::uint64_t>(*offset) >= appended_.size())
-            fail(array, fmt::format("the array '{}' begins at {}, but there are {} bytes of appended data", name, quoted_token(array.attribute("offset").value()), appended_.size()));
+            fail(array, fmt::format("the array '{}' begins at {}, but there are {} bytes of appended data", name,
+                                    quoted_token(array.attribute("offset").value()), appended_.size()));
         text = appended_.substr(static_cast<std::size_t>(*offset));
         base64 = appended_base64_;
     } else {
@@ -191,7 +203,8 @@ std::string VtkXml::decoded(pugi::xml_node array, std::string_view text, bool ba
     const std::uint64_t size = header_value(header, 0);
     if (size > text.size()) fail(array, fmt::format("the array '{}' states {} bytes, more than the file has", name, size));
     std::string all = base64 ? decode_base64(text, header_bytes_ + size) : std::string(text.substr(0, header_bytes_ + size));
-    if (all.size() < header_bytes_ + size) fail(array, fmt::format("the array '{}' states {} bytes, {} are there", name, size, all.size() - header_bytes_));
+    if (all.size() < header_bytes_ + size)
+        fail(array, fmt::format("the array '{}' states {} bytes, {} are there", name, size, all.size() - header_bytes_));
     all.erase(0, header_bytes_);
     return all;
 }
@@ -214,7 +227,8 @@ std::string VtkXml::inflated(pugi::xml_node array, std::string_view text, bool b
     std::uint64_t compressed = 0;
     for (std::size_t b = 0; b < blocks; ++b) {
         const std::uint64_t size = header_value(sizes, 3 + b);
-        if (size > text.size() || compressed > text.size()) fail(array, fmt::format("a block of the array '{}' states {} bytes, more than the file has", name, size));
+        if (size > text.size() || compressed > text.size())
+            fail(array, fmt::format("a block of the array '{}' states {} bytes, more than the file has", name, size));
         compressed += size;
     }
     text = text.substr(std::min(used, text.size()));
@@ -225,7 +239,8 @@ std::string VtkXml::inflated(pugi::xml_node array, std::string_view text, bool b
     for (std::size_t b = 0; b < blocks; ++b) {
         const auto size = static_cast<std::size_t>(header_value(sizes, 3 + b));
         const std::uint64_t stated = b + 1 == blocks && last_size != 0 ? last_size : block_size;
-        if (stated > kMostExpansion * size + 64) fail(array, fmt::format("a block of the array '{}' claims to hold {} bytes in {}", name, stated, size));
+        if (stated > kMostExpansion * size + 64)
+            fail(array, fmt::format("a block of the array '{}' claims to hold {} bytes in {}", name, stated, size));
         const std::size_t before = out.size();
         if (!inflate_block(std::string_view(data).substr(at, size), stated, out) || out.size() - before != stated)
             fail(array, fmt::format("block {} of the array '{}' is damaged", b + 1, name));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Abaqus .inp: nodes, tetrahedra (C3D4) in an element set for each region, a surface for each facet marker and a node set for each marker of segments and
-// vertices. Set names are the names of the input, as far as Abaqus allows: letters, digits, '_' and '-', at most 80, different from each other. Faces of
-// tetrahedra count as Abaqus does: S1 is 1-2-3, S2 1-4-2, S3 2-4-3, S4 3-4-1.
+// Abaqus .inp: nodes, tetrahedra (C3D4) in an element set for each region, a surface for each facet marker and a node set for each marker of segments
+// and vertices. Set names are the names of the input, as far as Abaqus allows: letters, digits, '_' and '-', at most 80, different from each other.
+// Faces of tetrahedra count as Abaqus does: S1 is 1-2-3, S2 1-4-2, S3 2-4-3, S4 3-4-1.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -99,7 +99,8 @@ private:
 
     /// The marker of a subface, or the number of its facet where no facet has a marker.
     [[nodiscard]] bool facets_are_marked() const {
-        return !mesh_.names.of_dimension[2].empty() || std::any_of(mesh_.subface_markers.begin(), mesh_.subface_markers.end(), [](std::int32_t m) { return m != 0; });
+        return !mesh_.names.of_dimension[2].empty() ||
+               std::any_of(mesh_.subface_markers.begin(), mesh_.subface_markers.end(), [](std::int32_t m) { return m != 0; });
     }
 
     /// A subface between two regions belongs to both tetrahedra; the surface takes the side of the lower number.

@@ -71,8 +71,8 @@ void write_vtp(const Plc& plc, OutputFile& out) {
     Names names = plc.names;
     names.of_dimension[3].clear();
     VtkFile file("PolyData");
-    file.begin(names, fmt::format("NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\"", plc.vertices.size(),
-                                  cells[0].offsets.size(), cells[1].offsets.size(), cells[2].offsets.size()));
+    file.begin(names, fmt::format("NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\"",
+                                  plc.vertices.size(), cells[0].offsets.size(), cells[1].offsets.size(), cells[2].offsets.size()));
     file.points(plc.vertices);
     file.text("</Points>\n<PointData>\n");
     if (!plc.vertex_markers.empty()) file.array("marker", plc.vertex_markers);

@@ -36,7 +36,7 @@ struct Box {
 /// Elements of one dimension with one reference and one marker.
 struct Entity {
     std::int32_t reference = 0, marker = 0;
-    std::int64_t tag = 0, group = 0;    // group 0: none
+    std::int64_t tag = 0, group = 0;
     std::size_t first = 0, last = 0;  // range of Dimension::order
     Box box;
     std::vector<std::uint32_t> vertices;  // that lie on it and on nothing of lower dimension, ascending
@@ -106,13 +106,11 @@ private:
             return;
         }
         std::vector<std::int32_t> markers;
-        for (const Entity& e : entities)
-            if (N == 4 || e.marker != 0 || names.contains(0)) markers.push_back(e.marker);  // 0 is no marker, but it is a region
+        for (const Entity& e : entities) markers.push_back(e.marker);  // 0 too: beside groups, what is in none is lost or refused by many a reader
         std::sort(markers.begin(), markers.end());
         markers.erase(std::unique(markers.begin(), markers.end()), markers.end());
         const auto tags = positive_tags(markers);
-        for (Entity& e : entities)
-            if (const auto tag = tags.find(e.marker); tag != tags.end()) e.group = tag->second;
+        for (Entity& e : entities) e.group = tags.at(e.marker);
         for (const std::int32_t marker : markers) {
             const auto name = names.find(marker);
             groups.push_back({tags.at(marker), name != names.end() ? name->second : generated_name(N - 1, marker)});
@@ -207,7 +205,7 @@ void write_entities(OutputFile& out, Groups& groups) {
                 out.character(' ');
                 write_point(out, e.box.high);
             }
-            out.text(e.group > 0 ? fmt::format(" 1 {}", e.group) : std::string(" 0"));
+            out.text(fmt::format(" 1 {}", e.group));
             out.text(dimension.kDimension > 0 ? " 0\n" : "\n");  // the entities that bound it are not stated
         }
     });

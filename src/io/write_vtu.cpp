@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// VTK XML unstructured grids: NAME.vtu holds the tetrahedra with region and shape and the points with what they lie on, NAME.boundary.vtu the pieces of
-// facets and segments. They are two files because viewers would show a triangle and the face of a tetrahedron in one place.
+// VTK XML unstructured grids: NAME.vtu holds the tetrahedra with region and shape and the points with what they lie on, NAME.boundary.vtu the pieces
+// of facets and segments. They are two files because viewers would show a triangle and the face of a tetrahedron in one place.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -66,8 +66,10 @@ void write_volume(const TetMesh& mesh, OutputFile& out) {
     file.array("types", std::vector<std::uint8_t>(tets, kVtkTetra));
     file.text("</Cells>\n<CellData Scalars=\"region\">\n");
     file.array("region", mesh.tet_regions);
-    add_measure(file, "min_dihedral_angle_deg", mesh, [](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& t) { return min_dihedral_deg(p, q, r, t); });
-    add_measure(file, "radius_edge_ratio", mesh, [](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& t) { return std::sqrt(radius_edge_squared(p, q, r, t)); });
+    add_measure(file, "min_dihedral_angle_deg", mesh,
+                [](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& t) { return min_dihedral_deg(p, q, r, t); });
+    add_measure(file, "radius_edge_ratio", mesh,
+                [](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& t) { return std::sqrt(radius_edge_squared(p, q, r, t)); });
     file.text("</CellData>\n");
     file.finish(out);
 }
@@ -80,7 +82,8 @@ struct BoundaryCells {
         for (std::size_t i = 0; i < mesh.subsegments.size(); ++i)
             add(kVtkLine, mesh.subsegments[i], marker(mesh.subsegment_markers, i), mesh.subsegment_segments[i]);
         for (std::size_t v = 0; v < mesh.vertex_markers.size(); ++v)
-            if (mesh.vertex_markers[v] != 0) add(kVtkVertex, std::array{static_cast<std::uint32_t>(v)}, mesh.vertex_markers[v], static_cast<std::int32_t>(v) + 1);
+            if (mesh.vertex_markers[v] != 0)
+                add(kVtkVertex, std::array{static_cast<std::uint32_t>(v)}, mesh.vertex_markers[v], static_cast<std::int32_t>(v) + 1);
         for (std::size_t v = 0; v < number.size(); ++v) {
             if (number[v] == kUnused) continue;
             number[v] = static_cast<std::int64_t>(vertices.size());

@@ -17,7 +17,8 @@ namespace {
 
 class FacetSimplifier {
 public:
-    FacetSimplifier(const Plc& plc, std::size_t most_corners) : plc_(plc), most_corners_(most_corners), number_(plc.vertices.size(), kUnused), out_(plc) {}
+    FacetSimplifier(const Plc& plc, std::size_t most_corners)
+        : plc_(plc), most_corners_(most_corners), number_(plc.vertices.size(), kUnused), out_(plc) {}
 
     Plc run() {
         out_.facets.clear();
@@ -32,7 +33,8 @@ public:
 
 private:
     [[nodiscard]] bool is_simple(const PlcFacet& facet) const {
-        return facet.polygons.size() == 1 && facet.holes.empty() && (facet.polygons[0].size() == 1 || (facet.polygons[0].size() >= 3 && facet.polygons[0].size() <= most_corners_));
+        return facet.polygons.size() == 1 && facet.holes.empty() &&
+               (facet.polygons[0].size() == 1 || (facet.polygons[0].size() >= 3 && facet.polygons[0].size() <= most_corners_));
     }
 
     void keep(std::size_t f, std::vector<std::vector<std::uint32_t>> polygons) {
@@ -42,7 +44,8 @@ private:
 
     [[noreturn]] void fail(std::size_t f, const char* why) const {
         const Vec3& where = plc_.vertices[plc_.facets[f].polygons[0][0]];
-        throw MeshError(ErrorCode::bad_input, Stage::validate, fmt::format("facet {} at {} can't be triangulated: {}", f + plc_.first_number, format_point(where), why),
+        throw MeshError(ErrorCode::bad_input, Stage::validate,
+                        fmt::format("facet {} at {} can't be triangulated: {}", f + plc_.first_number, format_point(where), why),
                         {{EntityKind::facet, f + plc_.first_number, where}});
     }
 
@@ -83,13 +86,13 @@ private:
     }
 
     /// Whether the triangles turn against the largest polygon, which is the outer one.
-    [[nodiscard]] bool turns_against(const PlcFacet& facet, const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<Vec3>& points) const {
+    [[nodiscard]] bool turns_against(const PlcFacet& facet, const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                                     const std::vector<Vec3>& points) const {
         const auto twice_area = [](const Vec3& a, const Vec3& b, const Vec3& c) { return cross(b - a, c - a); };
         Vec3 of_triangles{}, of_polygon{};
         for (const auto& t : triangles) of_triangles = of_triangles + twice_area(points[t[0]], points[t[1]], points[t[2]]);
-        const auto& outer = *std::max_element(facet.polygons.begin(), facet.polygons.end(), [&](const auto& p, const auto& q) {
-            return squared_norm(area(p)) < squared_norm(area(q));
-        });
+        const auto& outer = *std::max_element(facet.polygons.begin(), facet.polygons.end(),
+                                              [&](const auto& p, const auto& q) { return squared_norm(area(p)) < squared_norm(area(q)); });
         of_polygon = area(outer);
         return dot(of_triangles, of_polygon) < 0;
     }

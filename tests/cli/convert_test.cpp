@@ -26,8 +26,8 @@ json report_of(const std::string& path) { return json::parse(read_text(path)); }
 TEST(region_flags, name_the_cells_of_a_surface) {
     const ScratchFolder scratch;
     const std::string tower = scratch.write("tower.off", kTower);
-    const Outcome run = run_wellmesh({"mesh", tower, "--region-at", "0.5,0.5,0.5=base of it", "--region-at", "0.5,0.5,+1.5=7", "--min-dihedral", "0", "-o", scratch.file("t.msh"), "-o",
-                                      scratch.file("t.vtu"), "--json", scratch.file("r.json")});
+    const Outcome run = run_wellmesh({"mesh", tower, "--region-at", "0.5,0.5,0.5=base of it", "--region-at", "0.5,0.5,+1.5=7", "--min-dihedral", "0",
+                                      "-o", scratch.file("t.msh"), "-o", scratch.file("t.vtu"), "--json", scratch.file("r.json")});
     ASSERT_EQ(run.status, 0) << run.out << run.err;
     EXPECT_TRUE(contains(run.out, "base of it"));
     const TetMesh mesh = read_mesh(scratch.file("t.msh"));
@@ -44,7 +44,8 @@ TEST(region_flags, name_the_cells_of_a_surface) {
     const Outcome doctor = run_wellmesh({"doctor", tower, "--hole-at", "0.5,0.5,1.5", "--json", scratch.file("d.json")});
     EXPECT_EQ(doctor.status, 0) << doctor.out;
     EXPECT_EQ(report_of(scratch.file("d.json")).at("cells")[2].at("filled"), false);
-    const Outcome conflict = run_wellmesh({"mesh", tower, "--region-at", "0.5,0.5,0.5=a", "--region-at", "0.2,0.5,0.5=b", "-o", scratch.file("x.msh")});
+    const Outcome conflict =
+        run_wellmesh({"mesh", tower, "--region-at", "0.5,0.5,0.5=a", "--region-at", "0.2,0.5,0.5=b", "-o", scratch.file("x.msh")});
     EXPECT_EQ(conflict.status, 2);
     EXPECT_TRUE(contains(conflict.err, "lie in one cell")) << conflict.err;
     EXPECT_TRUE(contains(conflict.err, "(0.2, 0.5, 0.5)")) << conflict.err;
@@ -59,7 +60,7 @@ TEST(region_flags, name_the_cells_of_a_surface) {
 TEST(convert_command, meshes_and_complexes) {
     const ScratchFolder scratch;
     const RunOptions here{.folder = scratch.path()};
-    scratch.write("tower.off", kTower);
+    (void)scratch.write("tower.off", kTower);
     ASSERT_EQ(run_wellmesh({"mesh", "tower.off", "--min-dihedral", "0", "--quiet", "-o", "a.mesh"}, here).status, 0);
     const TetMesh mesh = read_mesh(scratch.file("a.mesh"));
     // Once around all formats of meshes; .inp is written alone.
@@ -95,8 +96,8 @@ TEST(convert_command, meshes_and_complexes) {
 TEST(convert_command, says_what_is_lost_and_what_is_wrong) {
     const ScratchFolder scratch;
     const RunOptions here{.folder = scratch.path()};
-    scratch.write("tower.off", kTower);
-    scratch.write("named.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng floor\nf 1 3 2\ng walls\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    (void)scratch.write("tower.off", kTower);
+    (void)scratch.write("named.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng floor\nf 1 3 2\ng walls\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
     const Outcome lossy = run_wellmesh({"convert", "named.obj", "a.off"}, here);
     EXPECT_EQ(lossy.status, 0);
     EXPECT_TRUE(contains(lossy.out, ".off can't carry the 2 markers of facets")) << lossy.out;

@@ -66,7 +66,7 @@ TEST(usage, slips_are_answered_with_the_nearest_word) {
         {{"mesh", "x.off", "--zzzzzz"}, "known are --help"},
         {{"mesh", "x.off", "y.off"}, "unexpected argument 'y.off'"},
         {{"mesh"}, "INPUT is required"},
-        {{}, "known are mesh improve study check quality doctor delaunay example"},
+        {{}, "known are mesh improve study check quality doctor delaunay convert example"},
     };
     for (const auto& [arguments, answer] : slips) {
         const Outcome outcome = run_wellmesh(arguments);

@@ -19,8 +19,8 @@
 
 namespace wellmesh::testing {
 
-/// Gmsh's binary format 4.1: each region a volume, in a physical group of its number + 1000; all subfaces surface 5 in group 7, the whole in two node blocks,
-/// the first of which has parameters. With a field "h" of node data. Node tags are 10, 20, 30, ...
+/// Gmsh's binary format 4.1: each region a volume, in a physical group of its number + 1000; all subfaces surface 5 in group 7, the whole in two node
+/// blocks, the first of which has parameters. With a field "h" of node data. Node tags are 10, 20, 30, ...
 inline std::string msh_binary(const TetMesh& mesh, bool little) {
     std::string out = "$MeshFormat\n4.1 1 8\n";
     const auto integer = [&](std::int64_t v) { append_number(out, static_cast<std::int32_t>(v), little); };
@@ -107,7 +107,9 @@ inline std::string vtu_text(const TetMesh& mesh, VtuStyle style) {
         }
         std::string bytes, header, data;
         for (const T v : values) append_number(bytes, v, style.little);
-        const auto count = [&](std::uint64_t v) { style.wide_header ? append_number(header, v, style.little) : append_number(header, static_cast<std::uint32_t>(v), style.little); };
+        const auto count = [&](std::uint64_t v) {
+            style.wide_header ? append_number(header, v, style.little) : append_number(header, static_cast<std::uint32_t>(v), style.little);
+        };
         if (style.compressed) {
             constexpr std::size_t kBlock = 256;  // so that there are several
             std::string blocks;
@@ -140,16 +142,25 @@ inline std::string vtu_text(const TetMesh& mesh, VtuStyle style) {
     std::vector<std::int32_t> regions = mesh.tet_regions;
     for (const Vec3& p : mesh.vertices) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) field.push_back(static_cast<double>(v) + 0.5);
-    for (const auto& t : mesh.tets) connectivity.insert(connectivity.end(), t.begin(), t.end()), offsets.push_back(static_cast<std::int64_t>(connectivity.size())), types.push_back(10);
-    for (const auto& f : mesh.subfaces) connectivity.insert(connectivity.end(), f.begin(), f.end()), offsets.push_back(static_cast<std::int64_t>(connectivity.size())), types.push_back(5);
+    for (const auto& t : mesh.tets)
+        connectivity.insert(connectivity.end(), t.begin(), t.end()), offsets.push_back(static_cast<std::int64_t>(connectivity.size())),
+            types.push_back(10);
+    for (const auto& f : mesh.subfaces)
+        connectivity.insert(connectivity.end(), f.begin(), f.end()), offsets.push_back(static_cast<std::int64_t>(connectivity.size())),
+            types.push_back(5);
     regions.insert(regions.end(), mesh.subface_markers.begin(), mesh.subface_markers.end());
-    std::string out = fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"{}\" header_type=\"{}\"{}>\n<UnstructuredGrid>\n",
-                                  style.little ? "LittleEndian" : "BigEndian", style.wide_header ? "UInt64" : "UInt32", style.compressed ? " compressor=\"vtkZLibDataCompressor\"" : "");
-    out += "<FieldData><DataArray type=\"Int32\" Name=\"left &amp; right\" NumberOfTuples=\"4\" format=\"ascii\">20 3 100 2</DataArray></FieldData>\n";
+    std::string out = fmt::format(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"{}\" header_type=\"{}\"{}>\n<UnstructuredGrid>\n",
+        style.little ? "LittleEndian" : "BigEndian", style.wide_header ? "UInt64" : "UInt32",
+        style.compressed ? " compressor=\"vtkZLibDataCompressor\"" : "");
+    out +=
+        "<FieldData><DataArray type=\"Int32\" Name=\"left &amp; right\" NumberOfTuples=\"4\" format=\"ascii\">20 3 100 2</DataArray></FieldData>\n";
     out += "<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"><Points/><Cells/></Piece>\n";
     out += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n", mesh.vertices.size(), types.size());
-    out += array("Float64", "h", field) + "</PointData><CellData>\n" + array("Int32", "region", regions) + "</CellData>\n<Points>\n" + array("Float64", "Points", coordinates, 3);
-    out += "</Points>\n<Cells>\n" + array("Int64", "connectivity", connectivity) + array("Int64", "offsets", offsets) + array("UInt8", "types", types);
+    out += array("Float64", "h", field) + "</PointData><CellData>\n" + array("Int32", "region", regions) + "</CellData>\n<Points>\n" +
+           array("Float64", "Points", coordinates, 3);
+    out +=
+        "</Points>\n<Cells>\n" + array("Int64", "connectivity", connectivity) + array("Int64", "offsets", offsets) + array("UInt8", "types", types);
     out += "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
     if (style.appended) out += fmt::format("<AppendedData encoding=\"{}\">\n _", style.base64 ? "base64" : "raw") + appended + "\n</AppendedData>\n";
     return out + "</VTKFile>\n";

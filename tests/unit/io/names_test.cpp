@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names, markers and numbers of entities through every format, as far as it carries them; and what it is said not to carry.
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <tuple>
 
@@ -25,7 +26,9 @@ TetMesh named_mesh() {
     mesh.vertex_markers[3] = 9;
     mesh.vertex_markers[11] = -9;
     mesh.names.of_dimension[0][9] = "probe";
-    mesh.names.of_dimension[1][4] = "weld, \xc3\xa4u\xc3\x9f" "ere";
+    mesh.names.of_dimension[1][4] =
+        "weld, \xc3\xa4u\xc3\x9f"
+        "ere";
     mesh.names.of_dimension[2][100] = "wall <hot> & 'dry'";
     mesh.names.of_dimension[3][20] = "wall <hot> & 'dry'";  // the same name in another dimension
     return mesh;
@@ -43,7 +46,8 @@ void expect_same(const TetMesh& back, const TetMesh& mesh) {
     EXPECT_EQ(back.vertices, mesh.vertices);
     EXPECT_EQ(rows(back.tets, back.tet_regions, {}), rows(mesh.tets, mesh.tet_regions, {}));
     EXPECT_EQ(rows(back.subfaces, back.subface_facets, back.subface_markers), rows(mesh.subfaces, mesh.subface_facets, mesh.subface_markers));
-    EXPECT_EQ(rows(back.subsegments, back.subsegment_segments, back.subsegment_markers), rows(mesh.subsegments, mesh.subsegment_segments, mesh.subsegment_markers));
+    EXPECT_EQ(rows(back.subsegments, back.subsegment_segments, back.subsegment_markers),
+              rows(mesh.subsegments, mesh.subsegment_segments, mesh.subsegment_markers));
     EXPECT_EQ(back.vertex_markers, mesh.vertex_markers);
     EXPECT_EQ(back.names, mesh.names);
 }
@@ -112,7 +116,8 @@ TEST(MeshNames, TetgenCarriesMarkers) {
 /// The sample box with markers, a wire, a point, seeds and names; one side has a hole and another is two polygons.
 Plc named_complex() {
     Plc plc;
-    plc.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.25, 0.25, 1}, {0.75, 0.25, 1}, {0.5, 0.75, 1}, {0.5, 0.5, 0.5}, {0.5, 0.4, 0.6}};
+    plc.vertices = {{0, 0, 0}, {1, 0, 0},       {1, 1, 0},       {0, 1, 0},      {0, 0, 1},       {1, 0, 1},      {1, 1, 1},
+                    {0, 1, 1}, {0.25, 0.25, 1}, {0.75, 0.25, 1}, {0.5, 0.75, 1}, {0.5, 0.5, 0.5}, {0.5, 0.4, 0.6}};
     const std::vector<std::vector<std::uint32_t>> sides{{3, 2, 1, 0}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
     for (std::size_t f = 0; f < sides.size(); ++f) plc.facets.push_back({{sides[f]}, {}, f < 3 ? 5 : -6});
     plc.facets.push_back({{{4, 5, 6, 7}, {8, 9, 10}}, {{0.5, 0.5, 1}}, 7});
@@ -177,17 +182,24 @@ TEST(ComplexNames, ThroughEveryFormat) {
         const Plc back = read_plc(directory / c.file);
         EXPECT_NEAR(area_of(back, 8, c.names ? "window of glass" : ""), c.markers || c.names ? 0.125 : 0, 1e-12);
         EXPECT_NEAR(area_of(back, 5, c.names ? "side" : ""), c.markers || c.names ? 3 : 0, 1e-12);
-        if (c.markers) { EXPECT_NEAR(area_of(back, -6, ""), 2, 1e-12); }
-        if (c.file != std::string("a.poly")) { EXPECT_NEAR(area_of(back, 7, ""), c.markers ? 0.875 : 0, 1e-12) << "what the hole leaves"; }
+        if (c.markers) {
+            EXPECT_NEAR(area_of(back, -6, ""), 2, 1e-12);
+        }
+        if (c.file != std::string("a.poly")) {
+            EXPECT_NEAR(area_of(back, 7, ""), c.markers ? 0.875 : 0, 1e-12) << "what the hole leaves";
+        }
         ASSERT_EQ(back.segments.size(), c.segments ? 1U : 0U);
         if (c.segments) {
-            EXPECT_TRUE(back.segments[0].marker == 3 || (back.names.find(1, back.segments[0].marker) && *back.names.find(1, back.segments[0].marker) == "wire"));
+            EXPECT_TRUE(back.segments[0].marker == 3 ||
+                        (back.names.find(1, back.segments[0].marker) && *back.names.find(1, back.segments[0].marker) == "wire"));
             EXPECT_EQ(back.vertices[back.segments[0].vertices[1]], (Vec3{0.5, 0.5, 0.5}));
         }
         EXPECT_EQ(back.vertex_markers.empty() ? 0 : back.vertex_markers[11], c.vertex_markers ? 2 : 0);
         EXPECT_EQ(back.region_seeds.size() + back.hole_seeds.size(), c.seeds ? 2U : 0U);
         const bool point = std::any_of(back.facets.begin(), back.facets.end(), [](const PlcFacet& f) { return f.polygons[0].size() == 1; });
-        if (c.file != std::string("a.vtp")) { EXPECT_EQ(point, c.point); }
+        if (c.file != std::string("a.vtp")) {
+            EXPECT_EQ(point, c.point);
+        }
     }
 }
 
@@ -205,6 +217,18 @@ TEST(ComplexNames, SurfacesKeepTheirRule) {
     }
 }
 
+TEST(ComplexNames, LostDigitsStayKnown) {
+    const TemporaryDirectory directory;
+    testing::Surface quads = testing::sample_surface();
+    for (Vec3& p : quads.vertices) p = {std::round(p.x * 1e5) / 1e5, std::round(p.y * 1e5) / 1e5, std::round(p.z * 1e5) / 1e5};
+    const Plc plc = read_plc(directory.write("a.off", testing::off_text(quads)));
+    ASSERT_GT(plc.relative_rounding, 1e-7);
+    for (const char* name : {"b.obj", "b.mesh", "b.msh", "b.vtp"}) {
+        write_plc(plc, directory / name);
+        EXPECT_EQ(read_plc(directory / name).relative_rounding, plc.relative_rounding) << name;
+    }
+}
+
 TEST(ComplexNames, ObjGroupsAndStlSolids) {
     const TemporaryDirectory directory;
     const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
@@ -213,7 +237,9 @@ TEST(ComplexNames, ObjGroupsAndStlSolids) {
     EXPECT_EQ(*obj.names.find(2, obj.facets[1].marker), "walls of it");
     EXPECT_EQ(*obj.names.find(2, obj.facets[3].marker), "walls of it/red");
     EXPECT_TRUE(read_plc(directory.write("b.obj", v + "g all\nf 1 3 2\nf 1 2 4\n")).names.empty()) << "one group tells nothing apart";
-    const auto facet = [](const char* c) { return std::string("facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex ") + c + "\nendloop\nendfacet\n"; };
+    const auto facet = [](const char* c) {
+        return std::string("facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex ") + c + "\nendloop\nendfacet\n";
+    };
     const Plc stl = read_plc(directory.write("a.stl", "solid  Inner case \n" + facet("0 1 0") + "endsolid\nsolid\n" + facet("0 0 1") + "endsolid\n"));
     EXPECT_EQ(*stl.names.find(2, 1), "Inner case");
     EXPECT_EQ(stl.names.find(2, 2), nullptr);

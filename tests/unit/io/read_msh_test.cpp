@@ -59,8 +59,11 @@ TEST(ReadMsh, BackgroundSizes) {
 }
 
 TEST(ReadMsh, Version2) {
-    const std::string text = kFormat2 + "$PhysicalNames\n3\n0 4 \"tip\"\n3 8 \"all of it\"\n2 6 \"base\"\n$EndPhysicalNames\n$Comments\nanything $goes here\n$EndComments\n" + kNodes2 +
-                             "$Elements\n6\n1 15 2 4 1 9\n2 2 2 6 3 7 3 5\n3 2 2 5 3 7 3 5\n4 1 2 0 11 7 3\n5 4 4 8 80 1 1 7 3 5 9\n6 2 2 6 4 7 3 9\n$EndElements\n";
+    const std::string text =
+        kFormat2 +
+        "$PhysicalNames\n3\n0 4 \"tip\"\n3 8 \"all of it\"\n2 6 \"base\"\n$EndPhysicalNames\n$Comments\nanything $goes here\n$EndComments\n" +
+        kNodes2 +
+        "$Elements\n6\n1 15 2 4 1 9\n2 2 2 6 3 7 3 5\n3 2 2 5 3 7 3 5\n4 1 2 0 11 7 3\n5 4 4 8 80 1 1 7 3 5 9\n6 2 2 6 4 7 3 9\n$EndElements\n";
     const TetMesh mesh = read_msh_mesh(source_of(text, "f.msh"));
     // Nodes come in the order of their numbers: 3, 5, 7, 9.
     EXPECT_EQ(mesh.vertices, (std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 0, 1}}));

@@ -37,7 +37,8 @@ TEST(ReadVtu, EveryEncoding) {
                         if (base64 || appended) styles.push_back({false, base64, appended, compressed, little, wide});
     ASSERT_EQ(styles.size(), 25U);
     for (const VtuStyle& style : styles) {
-        SCOPED_TRACE(fmt::format("ascii {} base64 {} appended {} compressed {} little {} wide {}", style.ascii, style.base64, style.appended, style.compressed, style.little, style.wide_header));
+        SCOPED_TRACE(fmt::format("ascii {} base64 {} appended {} compressed {} little {} wide {}", style.ascii, style.base64, style.appended,
+                                 style.compressed, style.little, style.wide_header));
         const std::string text = testing::vtu_text(mesh, style);
         const TetMesh back = read_vtu_mesh(source_of(text, "nowhere/f.vtu"));
         EXPECT_EQ(back.vertices, mesh.vertices);
@@ -95,7 +96,8 @@ TEST(ReadVtp, PolygonsLinesAndVertices) {
         "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0 1 0 0 1 1 0 0 1 0 0 0 1</DataArray></Points>"
         "<Verts><DataArray Name=\"connectivity\" type=\"Int32\">4</DataArray><DataArray Name=\"offsets\" type=\"Int32\">1</DataArray></Verts>"
         "<Lines><DataArray Name=\"connectivity\" type=\"Int32\">0 4 2</DataArray><DataArray Name=\"offsets\" type=\"Int32\">3</DataArray></Lines>"
-        "<Polys><DataArray Name=\"connectivity\" type=\"Int32\">0 1 2 3 0 1 4</DataArray><DataArray Name=\"offsets\" type=\"Int32\">4 7</DataArray></Polys>"
+        "<Polys><DataArray Name=\"connectivity\" type=\"Int32\">0 1 2 3 0 1 4</DataArray><DataArray Name=\"offsets\" type=\"Int32\">4 "
+        "7</DataArray></Polys>"
         "<CellData><DataArray Name=\"marker\" type=\"Int32\">9 8 7 6</DataArray></CellData></Piece></PolyData></VTKFile>";
     const Plc plc = read_vtp_surface(source_of(text));
     ASSERT_EQ(plc.facets.size(), 2U);

@@ -23,9 +23,13 @@ Plc furnished() {
         return static_cast<std::uint32_t>(plc.vertices.size() - 1);
     };
     plc.facets.push_back({{{vertex(0.3, 0.3, 0.3), vertex(0.7, 0.3, 0.3), vertex(0.7, 0.7, 0.3), vertex(0.3, 0.7, 0.3)}}, {}, 70});  // open, inside
-    plc.facets.push_back({{{vertex(1.3, 0.4, 0), vertex(1.7, 0.4, 0), vertex(1.7, 0.4, 0.4), vertex(1.3, 0.4, 0.4)}}, {}, 71});      // stands on the floor
+    plc.facets.push_back(
+        {{{vertex(1.3, 0.4, 0), vertex(1.7, 0.4, 0), vertex(1.7, 0.4, 0.4), vertex(1.3, 0.4, 0.4)}}, {}, 71});  // stands on the floor
+    const std::vector<std::uint32_t>& fin = plc.facets.back().polygons[0];
+    plc.facets[8].polygons.push_back({fin[0], fin[1]});  // the floor knows where
     plc.segments.push_back({{vertex(1.3, 0.7, 0.6), vertex(1.7, 0.7, 0.6)}, 80});
     plc.segments.push_back({{vertex(0.5, 0.5, 1), vertex(0.5, 0.5, 0.7)}, 81});  // from the ceiling
+    plc.facets[9].polygons.push_back({plc.segments.back().vertices[0]});
     const std::uint32_t lone = vertex(1.5, 0.2, 0.8);
     plc.vertex_markers.assign(plc.vertices.size(), 0);
     plc.vertex_markers[lone] = 90;
@@ -54,7 +58,8 @@ TEST(NamesInTheMesh, EveryEntityKnowsItsInput) {
             areas[mesh.subface_markers[f]] += norm(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a])) / 2;
             EXPECT_EQ(plc.facets.at(static_cast<std::size_t>(mesh.subface_facets[f]) - 1).marker, mesh.subface_markers[f]);
         }
-        for (std::size_t f = 0; f < plc.facets.size(); ++f) EXPECT_NEAR(areas[plc.facets[f].marker] / scale / scale, plc.facets[f].marker < 70 ? 1 : 0.16, 1e-9) << f;
+        for (std::size_t f = 0; f < plc.facets.size(); ++f)
+            EXPECT_NEAR(areas[plc.facets[f].marker] / scale / scale, plc.facets[f].marker < 70 ? 1 : 0.16, 1e-9) << f;
         ASSERT_EQ(mesh.subsegment_markers.size(), mesh.subsegments.size());
         for (std::size_t s = 0; s < mesh.subsegments.size(); ++s)
             lengths[mesh.subsegment_markers[s]] += distance(mesh.vertices[mesh.subsegments[s][0]], mesh.vertices[mesh.subsegments[s][1]]);

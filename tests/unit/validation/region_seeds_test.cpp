@@ -61,8 +61,9 @@ TEST(RegionSeeds, ConflictsSayWhere) {
             DefectKind kind;
             Vec3 seed;
         };
-        for (const Case& c : {Case{DefectKind::seed_conflict, {0.25, 0.5, 0.5}}, Case{DefectKind::seed_conflict, {1.75, 0.01, 0.99}}, Case{DefectKind::seed_outside, {1, 1, 1.001}},
-                              Case{DefectKind::seed_outside, {-3, 0.5, 0.5}}, Case{DefectKind::seed_on_facet, {1, 0.5, 0.5}}, Case{DefectKind::seed_on_facet, {0.5, 0.25, 1}},
+        for (const Case& c : {Case{DefectKind::seed_conflict, {0.25, 0.5, 0.5}}, Case{DefectKind::seed_conflict, {1.75, 0.01, 0.99}},
+                              Case{DefectKind::seed_outside, {1, 1, 1.001}}, Case{DefectKind::seed_outside, {-3, 0.5, 0.5}},
+                              Case{DefectKind::seed_on_facet, {1, 0.5, 0.5}}, Case{DefectKind::seed_on_facet, {0.5, 0.25, 1}},
                               Case{DefectKind::seed_on_facet, {2, 1, 0.5}}, Case{DefectKind::seed_on_facet, {0, 0, 0}}}) {
             const Diagnosis d = with_seed(place, c.seed);
             std::size_t errors = 0;
