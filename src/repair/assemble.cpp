@@ -56,7 +56,7 @@ private:
     void find_kept_facets();
     void number_vertices();
     void emit_facets();
-    void emit_copies(std::uint32_t f, const PlcFacet& facet, int winding);
+    void emit_copies(const PlcFacet& facet, int winding);
     void emit_segments();
 
     const Plc& plc_;
@@ -108,12 +108,11 @@ void Assembler::number_vertices() {
 }
 
 /// In surface files copies carry the winding number on: none for 1, two that cancel for 0, as where solids touch.
-void Assembler::emit_copies(std::uint32_t f, const PlcFacet& facet, int winding) {
+void Assembler::emit_copies(const PlcFacet& facet, int winding) {
     const auto turned = [](PlcFacet copy) {
         for (auto& polygon : copy.polygons) std::reverse(polygon.begin() + 1, polygon.end());
         return copy;
     };
-    (void)f;
     if (plc_.fill != FillRule::nonzero_winding || winding > 0) {
         const int copies = plc_.fill == FillRule::nonzero_winding ? winding : 1;
         for (int i = 0; i < copies; ++i) out_.facets.push_back(facet);
@@ -133,7 +132,7 @@ void Assembler::emit_facets() {
             PlcFacet facet = stated;
             for (auto& polygon : facet.polygons)
                 for (std::uint32_t& v : polygon) v = number_[stated_.of_input[v]];
-            emit_copies(f, facet, pieces_.triangles[pieces_of_[f].front()].winding);
+            emit_copies(facet, pieces_.triangles[pieces_of_[f].front()].winding);
             continue;
         }
         if (pieces_of_[f].size() > 1) ++stated_.pieces.actions.facets_cut;
@@ -142,7 +141,7 @@ void Assembler::emit_facets() {
             facet.marker = stated.marker;
             const auto& v = pieces_.triangles[t].v;
             facet.polygons = {{number_[v[0]], number_[v[1]], number_[v[2]]}};
-            emit_copies(f, facet, pieces_.triangles[t].winding);
+            emit_copies(facet, pieces_.triangles[t].winding);
         }
     }
 }
