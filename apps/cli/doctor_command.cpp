@@ -72,7 +72,7 @@ Repaired write_repaired(const DoctorCommand& arguments, const Plc& plc, Interrup
     RepairOptions options = arguments.repair;
     options.coplanar_tolerance = arguments.options.coplanar_tolerance;
     repaired.result = repair(plc, options, interrupt.token());
-    if (repaired.result.max_displacement > 2 * repaired.result.tolerance) return repaired;
+    if (!repaired.result.resolved || repaired.result.max_displacement > 2 * repaired.result.tolerance) return repaired;
     require_expressible(arguments, plc, repaired.result.diagnosis);
     write_plc(repaired.result.plc, arguments.repaired);
     repaired.written = true;
