@@ -93,7 +93,8 @@ void Assembler::number_vertices() {
     number_.assign(pieces_.pool.size(), StatedPieces::kUnusable);
     out_.vertices.clear();
     out_.vertex_markers.clear();
-    const bool marked = plc_.vertex_markers.size() == plc_.vertices.size();
+    out_.vertex_sizes.clear();
+    const bool marked = plc_.vertex_markers.size() == plc_.vertices.size(), sized = plc_.vertex_sizes.size() == plc_.vertices.size();
     for (std::uint32_t v = 0; v < used.size(); ++v) {
         if (!used[v]) {
             if (first_input[v] != StatedPieces::kUnusable) ++stated_.pieces.actions.unused_vertices_dropped;
@@ -103,6 +104,7 @@ void Assembler::number_vertices() {
         out_.vertices.push_back(pieces_.pool[v]);
         const bool stated = first_input[v] != StatedPieces::kUnusable;
         if (marked) out_.vertex_markers.push_back(stated ? plc_.vertex_markers[first_input[v]] : 0);
+        if (sized) out_.vertex_sizes.push_back(stated ? plc_.vertex_sizes[first_input[v]] : 0);
         if (!stated) ++stated_.pieces.actions.intersection_points;
     }
 }
