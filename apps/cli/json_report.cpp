@@ -222,18 +222,51 @@ Json to_json(const std::vector<StageTime>& stages) {
 
 Json to_json(const Diagnosis& diagnosis) {
     Json defects = Json::array();
+    const auto places = [](const std::vector<Vec3>& points) {
+        Json list = Json::array();
+        for (const Vec3& p : points) list.push_back(to_json(p));
+        return list;
+    };
     for (const Defect& defect : diagnosis.defects)
         defects.push_back({{"severity", key(defect.severity)}, {"kind", to_string(defect.kind)}, {"message", defect.message},
-                           {"value", defect.value}, {"elements", to_json(defect.elements)}});
+                          {"value", defect.value}, {"elements", to_json(defect.elements)}, {"points", places(defect.points)}});
     Json json;
     json["has_errors"] = diagnosis.has_errors();
     json["vertices"] = diagnosis.vertices;
     json["segments"] = diagnosis.segments;
     json["facets"] = diagnosis.facets;
     json["coplanar_tolerance"] = diagnosis.coplanar_tolerance;
+    const auto smallest = [&](const SmallestFeature& feature) {
+        return feature.points.empty() ? Json() : Json{{"value", feature.value}, {"points", places(feature.points)}};
+    };
+    json["smallest"] = {{"segment", smallest(diagnosis.smallest.segment)}, {"gap", smallest(diagnosis.smallest.gap)},
+                        {"angle_deg", smallest(diagnosis.smallest.angle)}};
     json["defects"] = std::move(defects);
     json["cells"] = to_json(diagnosis.cells);
     return json;
+}
+
+Json to_json(const RepairResult& result) {
+    const RepairActions& a = result.actions;
+    return {{"tolerance", result.tolerance},
+            {"max_displacement", result.max_displacement},
+            {"displaced_most", to_json(result.displaced_most)},
+            {"rounds", result.rounds},
+            {"resolved", result.resolved},
+            {"summary", result.summary},
+            {"actions",
+             {{"unusable_dropped", a.unusable_dropped},
+              {"vertices_merged", a.vertices_merged},
+              {"unused_vertices_dropped", a.unused_vertices_dropped},
+              {"degenerate_dropped", a.degenerate_dropped},
+              {"duplicates_dropped", a.duplicates_dropped},
+              {"folds_dropped", a.folds_dropped},
+              {"inner_dropped", a.inner_dropped},
+              {"facets_turned", a.facets_turned},
+              {"vertices_joined_to_edges", a.vertices_joined_to_edges},
+              {"vertices_joined_to_facets", a.vertices_joined_to_facets},
+              {"intersection_points", a.intersection_points},
+              {"facets_cut", a.facets_cut}}}};
 }
 
 Json to_json(const MeshError& error) {

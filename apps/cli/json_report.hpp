@@ -11,6 +11,7 @@
 #include "wellmesh/error.hpp"
 #include "wellmesh/invariants.hpp"
 #include "wellmesh/options.hpp"
+#include "wellmesh/repair.hpp"
 #include "wellmesh/result.hpp"
 
 namespace wellmesh::cli {
@@ -30,6 +31,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json to_json(const MeshStatistics& statistics);
 [[nodiscard]] Json to_json(const std::vector<StageTime>& stages);
 [[nodiscard]] Json to_json(const Diagnosis& diagnosis);
+[[nodiscard]] Json to_json(const RepairResult& result);  ///< without the complex and its diagnosis
 [[nodiscard]] Json to_json(const MeshError& error);
 
 /// Writes `report` to `path` ("-": standard output), ended by a newline. @throws MeshError{cannot_write}

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "text_table.hpp"
 
@@ -185,23 +184,47 @@ std::string render_stages(const std::vector<StageTime>& stages) {
     return "Time\n" + table.str();
 }
 
-std::string render_diagnosis(const Diagnosis& diagnosis) {
+namespace {
+
+/// Kinds and how often they are, then the defects themselves, of each kind and severity the first ones.
+std::string render_defects(const Diagnosis& diagnosis, std::size_t most_of_a_kind) {
+    if (diagnosis.defects.empty()) return "Defects: none\n";
+    TextTable counts({{"severity"}, {"defect"}, {"number", Align::right}});
+    TextTable table({{"severity"}, {"defect"}, {"value", Align::right}, {"where"}, {"message"}});
+    std::string left_out;
+    const auto& all = diagnosis.defects;
+    for (std::size_t first = 0; first < all.size();) {
+        std::size_t last = first;
+        while (last < all.size() && all[last].severity == all[first].severity && all[last].kind == all[first].kind) ++last;
+        const std::size_t n = last - first;
+        counts.add({to_string(all[first].severity), to_string(all[first].kind), count(n)});
+        for (std::size_t d = first; d < std::min(last, first + most_of_a_kind); ++d)
+            table.add({to_string(all[d].severity), to_string(all[d].kind), number(all[d].value), describe(all[d].elements, 4), all[d].message});
+        if (n > most_of_a_kind)
+            left_out += fmt::format("  and {} more: {}; --all or --json FILE lists them all\n", n - most_of_a_kind, to_string(all[first].kind));
+        first = last;
+    }
+    return "Defects\n" + counts.str() + "Where\n" + table.str() + left_out;
+}
+
+std::string render_smallest(const SmallestFeatures& smallest) {
+    TextTable table({{"smallest"}, {"value", Align::right}, {"from"}, {"to"}});
+    const auto add = [&](const char* what, const SmallestFeature& feature) {
+        if (!feature.points.empty()) table.add({what, fmt::format("{:.6g}", feature.value), point(feature.points.front()), feature.points.size() > 1 ? point(feature.points[1]) : ""});
+    };
+    add("segment", smallest.segment);
+    add("gap", smallest.gap);
+    add("angle [deg]", smallest.angle);
+    return table.empty() ? std::string() : "Features\n" + table.str();
+}
+
+}  // namespace
+
+std::string render_diagnosis(const Diagnosis& diagnosis, std::size_t most_of_a_kind) {
     std::string text = fmt::format("Complex: {} vertices, {} segments, {} facets, {} cells; planarity tolerance {:.3g}\n", diagnosis.vertices,
                                    diagnosis.segments, diagnosis.facets, diagnosis.cells.size(), diagnosis.coplanar_tolerance);
-    if (diagnosis.defects.empty()) {
-        text += "Defects: none\n";
-    } else {
-        TextTable table({{"severity"}, {"defect"}, {"value", Align::right}, {"where"}, {"message"}});
-        // Errors all stand here; of the rest (a triangulated surface may have an acute angle at every corner) the first ones of each kind.
-        constexpr std::size_t kMostOthers = 20;
-        std::map<DefectKind, std::size_t> others;
-        for (const Defect& defect : diagnosis.defects)
-            if (defect.severity == Severity::error || ++others[defect.kind] <= kMostOthers)
-                table.add({to_string(defect.severity), to_string(defect.kind), number(defect.value), describe(defect.elements, 4), defect.message});
-        text += "Defects\n" + table.str();
-        for (const auto& [kind, total] : others)
-            if (total > kMostOthers) text += fmt::format("  and {} more: {}; --json FILE lists them all\n", total - kMostOthers, to_string(kind));
-    }
+    text += render_defects(diagnosis, most_of_a_kind);
+    text += render_smallest(diagnosis.smallest);
     return text + render_cells(diagnosis.cells);
 }
 

@@ -27,7 +27,8 @@ namespace wellmesh::cli {
 [[nodiscard]] std::string render_given(const GivenMeshStatistics& given);        ///< a few lines
 [[nodiscard]] std::string render_regions(const Certificate& certificate);
 [[nodiscard]] std::string render_stages(const std::vector<StageTime>& stages);
-[[nodiscard]] std::string render_diagnosis(const Diagnosis& diagnosis);
+/// Of each kind of defect, at most so many.
+[[nodiscard]] std::string render_diagnosis(const Diagnosis& diagnosis, std::size_t most_of_a_kind);
 /// The first `most` cells of the input. Empty if there are none.
 [[nodiscard]] std::string render_cells(const std::vector<CellSummary>& cells, std::size_t most = static_cast<std::size_t>(-1));
 

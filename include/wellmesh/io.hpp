@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "wellmesh/background_mesh.hpp"
+#include "wellmesh/diagnosis.hpp"
 #include "wellmesh/error.hpp"
 #include "wellmesh/exemption.hpp"
 #include "wellmesh/plc.hpp"
@@ -69,5 +70,9 @@ std::vector<std::filesystem::path> write_exemptions(const std::vector<Exemption>
 
 /// Whether a file is a tetrahedral mesh: a .node or .ele, or a .mesh, .msh or .vtu with tetrahedra. @throws as read_mesh
 [[nodiscard]] bool holds_mesh(const std::filesystem::path& path);
+
+/// Writes where the defects of `diagnosis` are as .vtp (VTK polygonal data): points, lines and triangles with the cell data severity (0 note, 1 warning,
+/// 2 error), kind (position in DefectKind), defect (position in the list) and value. @throws MeshError  cannot_write.
+void write_trouble_spots(const Diagnosis& diagnosis, const std::filesystem::path& path);
 
 }  // namespace wellmesh

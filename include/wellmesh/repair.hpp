@@ -39,14 +39,14 @@ struct RepairActions {
 };
 
 struct RepairResult {
-    Plc plc;               ///< valid iff !diagnosis.has_errors()
+    Plc plc;               ///< valid iff !diagnosis.has_errors(); the input itself unless `resolved`
     Diagnosis diagnosis;   ///< of `plc`
     RepairActions actions;
     double tolerance = 0;         ///< that was used, input units
     double max_displacement = 0;  ///< largest distance of a point of the result from the facet, segment or vertex that it stems from
     Vec3 displaced_most{};        ///< where that is
     unsigned rounds = 0;          ///< of joining and cutting, the last without finding anything
-    bool resolved = false;        ///< whether a round found nothing more to do
+    bool resolved = false;        ///< whether a round found nothing more to do; otherwise given up
     /// One or several sentences: what was done; what is left to do, and why it was left.
     std::string summary;
 };

@@ -17,6 +17,7 @@
 #include "wellmesh/options.hpp"
 #include "wellmesh/plc.hpp"
 #include "wellmesh/predicates.hpp"
+#include "wellmesh/repair.hpp"
 #include "wellmesh/result.hpp"
 #include "wellmesh/run_control.hpp"
 #include "wellmesh/tet_mesh.hpp"

@@ -104,6 +104,8 @@ const char* to_string(DefectKind kind) noexcept {
         case DefectKind::acute_segment_angle: return "acute_segment_angle";
         case DefectKind::acute_dihedral_angle: return "acute_dihedral_angle";
         case DefectKind::empty_input: return "empty_input";
+        case DefectKind::non_manifold_edge: return "non_manifold_edge";
+        case DefectKind::near_miss: return "near_miss";
     }
     return "?";
 }

@@ -183,4 +183,11 @@ bool holds_mesh(const std::filesystem::path& path) {
     return false;
 }
 
+void write_trouble_spots(const Diagnosis& diagnosis, const std::filesystem::path& path) {
+    if (io::lower_case_extension(path) != ".vtp") unknown_format(ErrorCode::cannot_write, Stage::write, "write trouble spots to", path, ".vtp");
+    io::OutputSet files;
+    io::write_trouble_spots(diagnosis, files.add(path));
+    files.commit();
+}
+
 }  // namespace wellmesh

@@ -8,6 +8,7 @@
 
 #include "io/atomic_file.hpp"
 #include "wellmesh/io.hpp"
+#include "wellmesh/diagnosis.hpp"
 #include "wellmesh/plc.hpp"
 #include "wellmesh/tet_mesh.hpp"
 
@@ -34,5 +35,7 @@ void write_binary_stl(const Plc& plc, OutputFile& out);  ///< float32; facets ar
 void write_medit_surface(const Plc& plc, OutputFile& out);             ///< facets are triangles
 void write_msh_surface(const Plc& plc, int version, OutputFile& out);  ///< facets are triangles
 void write_vtp(const Plc& plc, OutputFile& out);
+/// Where defects are, as .vtp.
+void write_trouble_spots(const Diagnosis& diagnosis, OutputFile& out);
 
 }  // namespace wellmesh::io

@@ -56,7 +56,7 @@ private:
     void find_kept_facets();
     void number_vertices();
     void emit_facets();
-    void emit_copies(std::uint32_t f, const PlcFacet& facet, int winding);
+    void emit_copies(const PlcFacet& facet, int winding);
     void emit_segments();
 
     const Plc& plc_;
@@ -93,7 +93,8 @@ void Assembler::number_vertices() {
     number_.assign(pieces_.pool.size(), StatedPieces::kUnusable);
     out_.vertices.clear();
     out_.vertex_markers.clear();
-    const bool marked = plc_.vertex_markers.size() == plc_.vertices.size();
+    out_.vertex_sizes.clear();
+    const bool marked = plc_.vertex_markers.size() == plc_.vertices.size(), sized = plc_.vertex_sizes.size() == plc_.vertices.size();
     for (std::uint32_t v = 0; v < used.size(); ++v) {
         if (!used[v]) {
             if (first_input[v] != StatedPieces::kUnusable) ++stated_.pieces.actions.unused_vertices_dropped;
@@ -103,17 +104,17 @@ void Assembler::number_vertices() {
         out_.vertices.push_back(pieces_.pool[v]);
         const bool stated = first_input[v] != StatedPieces::kUnusable;
         if (marked) out_.vertex_markers.push_back(stated ? plc_.vertex_markers[first_input[v]] : 0);
+        if (sized) out_.vertex_sizes.push_back(stated ? plc_.vertex_sizes[first_input[v]] : 0);
         if (!stated) ++stated_.pieces.actions.intersection_points;
     }
 }
 
 /// In surface files copies carry the winding number on: none for 1, two that cancel for 0, as where solids touch.
-void Assembler::emit_copies(std::uint32_t f, const PlcFacet& facet, int winding) {
+void Assembler::emit_copies(const PlcFacet& facet, int winding) {
     const auto turned = [](PlcFacet copy) {
         for (auto& polygon : copy.polygons) std::reverse(polygon.begin() + 1, polygon.end());
         return copy;
     };
-    (void)f;
     if (plc_.fill != FillRule::nonzero_winding || winding > 0) {
         const int copies = plc_.fill == FillRule::nonzero_winding ? winding : 1;
         for (int i = 0; i < copies; ++i) out_.facets.push_back(facet);
@@ -133,7 +134,7 @@ void Assembler::emit_facets() {
             PlcFacet facet = stated;
             for (auto& polygon : facet.polygons)
                 for (std::uint32_t& v : polygon) v = number_[stated_.of_input[v]];
-            emit_copies(f, facet, pieces_.triangles[pieces_of_[f].front()].winding);
+            emit_copies(facet, pieces_.triangles[pieces_of_[f].front()].winding);
             continue;
         }
         if (pieces_of_[f].size() > 1) ++stated_.pieces.actions.facets_cut;
@@ -142,7 +143,7 @@ void Assembler::emit_facets() {
             facet.marker = stated.marker;
             const auto& v = pieces_.triangles[t].v;
             facet.polygons = {{number_[v[0]], number_[v[1]], number_[v[2]]}};
-            emit_copies(f, facet, pieces_.triangles[t].winding);
+            emit_copies(facet, pieces_.triangles[t].winding);
         }
     }
 }

@@ -63,7 +63,9 @@ std::string summarise(const RepairResult& r) {
     if (text.empty()) text = "nothing to do";
     text += fmt::format(". Nothing moved by more than {:.3g}{}.", r.max_displacement, r.max_displacement > 0 ? ", near " + format_point(r.displaced_most) : std::string());
     if (!r.resolved)
-        text += fmt::format(" Intersections are left: after {} rounds of cutting, rounding still made new ones; a larger tolerance may help.", r.rounds);
+        text += fmt::format(" Given up: after {} rounds there were still intersections to cut, and the more, the more was cut: many facets are almost coplanar or lie in each "
+                            "other. The input is left as it is; a tolerance above the distance of these facets may help.",
+                            r.rounds);
     if (r.max_displacement > 2 * r.tolerance)
         text += fmt::format(" That is more than twice the tolerance of {:.3g}: the result is refused; features as small as the tolerance are too close to each other.", r.tolerance);
     return text;
@@ -95,7 +97,14 @@ RepairResult repair(const Plc& plc, const RepairOptions& options, const std::sto
     const Resolution resolution = resolve(stated, least_repair_tolerance(plc) / 8, stop);
     result.resolved = resolution.complete;
     result.rounds = resolution.rounds;
-    if (result.resolved && plc.fill == FillRule::nonzero_winding) drop_idle_pieces(stated.pieces, options.drop_inner_facets);
+    if (!result.resolved) {  // half cut, it would be worse than before
+        result.plc = plc;
+        result.actions = stated.pieces.actions;
+        result.diagnosis = diagnose(plc);
+        result.summary = summarise(result);
+        return result;
+    }
+    if (plc.fill == FillRule::nonzero_winding) drop_idle_pieces(stated.pieces, options.drop_inner_facets);
     const Displacement displacement = displacement_of(plc, stated);
     result.max_displacement = displacement.distance;
     result.displaced_most = displacement.where;

@@ -174,7 +174,7 @@ void merge_copies(Pieces& pieces) {
 }
 
 Resolution resolve(StatedPieces& stated, double least_reach, const std::stop_token& stop) {
-    constexpr std::size_t kMostGrowth = 30;  // two surfaces that intersect each other everywhere grew 15-fold
+    constexpr std::size_t kMostGrowth = 24;  // overlapping bodies of thousands of facets grew three- to tenfold
     constexpr unsigned kMostRounds = 60;  // inputs with thousands of intersections took five to ten
     // What lies closer than the tolerance may have no triangulation without needles lower than it, and joining one would make the next: everything is
     // joined once. From then on the reach merely keeps vertices apart from contacts of a few ulp.
@@ -182,7 +182,7 @@ Resolution resolve(StatedPieces& stated, double least_reach, const std::stop_tok
     Resolution result;
     EdgeSplits splits;
     merge_copies(pieces);
-    const std::size_t most_triangles = kMostGrowth * pieces.triangles.size() + 100000;
+    const std::size_t most_triangles = kMostGrowth * pieces.triangles.size() + 10000;
     while (result.rounds < kMostRounds && pieces.triangles.size() <= most_triangles) {
         if (stop.stop_requested()) throw MeshError(ErrorCode::cancelled, Stage::validate, "interrupted while repairing");
         ++result.rounds;

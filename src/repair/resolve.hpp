@@ -14,7 +14,8 @@ struct Resolution {
 };
 
 /// A round finds all contacts of what the last one changed and cuts accordingly. Cutting rounds vertices, and rounding may make new contacts, so it
-/// takes some rounds; there is no proof that it ends, hence a limit on rounds and on growth. @throws MeshError{cancelled}
+/// takes some rounds; there is no proof that it ends, hence a limit on rounds and on growth. The reach of the pool holds in the first round,
+/// `least_reach` from then on. @throws MeshError{cancelled}
 [[nodiscard]] Resolution resolve(StatedPieces& stated, double least_reach, const std::stop_token& stop);
 
 }  // namespace wellmesh

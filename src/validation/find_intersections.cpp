@@ -134,7 +134,14 @@ void IntersectionFinder::add(std::size_t i, std::size_t j, const Vec3& where) {
     std::string first, second;
     describe(i, where, elements, first);
     describe(j, where, elements, second);
-    report_.add(DefectKind::self_intersection, Severity::error, std::move(elements), fmt::format("{} and {} meet at {}", first, second, format_point(where)));
+    std::vector<Vec3> ends{where};
+    if (i < first_wire() && j < first_wire()) {
+        const auto [from, to] = contact_ends(triangle(i), triangle(j));
+        ends = {from, to};
+        if (from == to) ends.pop_back();
+    }
+    const std::string place = ends.size() == 2 ? fmt::format("from {} to {}", format_point(ends[0]), format_point(ends[1])) : "at " + format_point(ends[0]);
+    report_.add(DefectKind::self_intersection, Severity::error, std::move(elements), fmt::format("{} and {} meet {}", first, second, place), 0, std::move(ends));
 }
 
 void IntersectionFinder::describe(std::size_t i, const Vec3& where, std::vector<ElementRef>& elements, std::string& text) const {

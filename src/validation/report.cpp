@@ -18,9 +18,10 @@ std::string with_line(const char* kind, std::uint64_t number, const std::vector<
 
 }  // namespace
 
-void Report::add(DefectKind kind, Severity severity, std::vector<ElementRef> elements, std::string message, double value) {
+void Report::add(DefectKind kind, Severity severity, std::vector<ElementRef> elements, std::string message, double value,
+                 std::vector<Vec3> points) {
     errors_ += severity == Severity::error;
-    defects_.push_back({kind, severity, std::move(elements), std::move(message), value});
+    defects_.push_back({kind, severity, std::move(elements), std::move(message), value, std::move(points)});
 }
 
 ElementRef Report::vertex(std::size_t input_vertex) const {

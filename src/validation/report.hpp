@@ -16,7 +16,8 @@ class Report {
 public:
     explicit Report(const Plc& plc) : plc_(plc) {}
 
-    void add(DefectKind kind, Severity severity, std::vector<ElementRef> elements, std::string message, double value = 0);
+    void add(DefectKind kind, Severity severity, std::vector<ElementRef> elements, std::string message, double value = 0,
+             std::vector<Vec3> points = {});
 
     /// References to entities of the input; `input_*` count from 0, the results as the source counts.
     [[nodiscard]] ElementRef vertex(std::size_t input_vertex) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/vec3_math.hpp"
 #include "validation/plane.hpp"
@@ -122,6 +123,25 @@ std::optional<Vec3> contact(const NamedTriangle& s, const NamedTriangle& t) {
         if (const auto x = meet({t.p[i], t.p[(i + 1) % 3]}, s.p)) return x;
     }
     return std::nullopt;
+}
+
+std::array<Vec3, 2> contact_ends(const NamedTriangle& s, const NamedTriangle& t) {
+    std::vector<Vec3> found;
+    const auto collect = [&](const Triangle& x, const Triangle& y) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (is_on(x[i], y)) found.push_back(x[i]);
+            if (const auto p = meet({x[i], x[(i + 1) % 3]}, y)) found.push_back(*p);
+            if (const auto p = meet({x[(i + 1) % 3], x[i]}, y)) found.push_back(*p);
+        }
+    };
+    collect(s.p, t.p);
+    collect(t.p, s.p);
+    if (found.empty()) return {s.p[0], s.p[0]};
+    std::array<Vec3, 2> ends{found[0], found[0]};
+    for (std::size_t i = 0; i < found.size(); ++i)
+        for (std::size_t j = i + 1; j < found.size(); ++j)
+            if (squared_distance(found[i], found[j]) > squared_distance(ends[0], ends[1])) ends = {found[i], found[j]};
+    return ends;
 }
 
 std::optional<Vec3> contact(const NamedSegment& s, const NamedTriangle& t) {

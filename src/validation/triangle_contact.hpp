@@ -26,6 +26,10 @@ struct NamedSegment {
 [[nodiscard]] std::optional<Vec3> contact(const NamedSegment& s, const NamedTriangle& t);
 [[nodiscard]] std::optional<Vec3> contact(const NamedSegment& s, const NamedSegment& t);
 
+/// Of triangles that meet according to contact(): the ends of their common part, or two points of it that are far apart where it is an area. Which points
+/// are tried is decided exactly, their coordinates are rounded; equal ends: one point.
+[[nodiscard]] std::array<Vec3, 2> contact_ends(const NamedTriangle& s, const NamedTriangle& t);
+
 /// Is p on the closed triangle or segment? Exact.
 [[nodiscard]] bool is_on(const Vec3& p, const std::array<Vec3, 3>& triangle);
 [[nodiscard]] bool is_on(const Vec3& p, const std::array<Vec3, 2>& segment);

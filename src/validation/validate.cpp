@@ -10,6 +10,7 @@
 #include "core/check.hpp"
 #include "core/vec3_math.hpp"
 #include "predicates/exact_range.hpp"
+#include "validation/examine.hpp"
 #include "validation/facet_planarity.hpp"
 #include "validation/fill_cells.hpp"
 #include "validation/find_duplicates.hpp"
@@ -39,6 +40,7 @@ struct ValidPlcBuilder {
     void compress_vertices();
     void keep_vertex_markers(const std::vector<VertexId>& number);
     void summarise();
+    void examine_further();
 
     const Plc& plc;
     const Checkpoint checkpoint;
@@ -49,6 +51,7 @@ struct ValidPlcBuilder {
     EdgeTable edges;
     FacetGroups groups;
     std::vector<std::uint32_t> segment_of_edge;
+    std::optional<double> near;  ///< distance of near misses, where a full examination is asked for
     ValidPlc out;
 };
 
@@ -73,6 +76,7 @@ void ValidPlcBuilder::run() {
     if (plc.fill == FillRule::nonzero_winding) find_open_edges(Severity::error);
     find_segments();
     find_facets();
+    if (near) examine_further();
     if (report.has_errors()) return;
     pass(checkpoint);
     const LineQuery lines(input.points, soup.triangles);
@@ -321,6 +325,34 @@ ValidPlc validate(const Plc& plc, const MeshOptions& options, const Checkpoint& 
     builder.summarise();
     throw_if_invalid(builder.out.diagnosis, plc.source_name);
     return std::move(builder.out);
+}
+
+/// What a valid complex may have, and what is told about an invalid one all the same.
+void ValidPlcBuilder::examine_further() {
+    const Complexes complex{input, soup, edges, groups};
+    if (report.has_errors()) {
+        find_seeds_beyond(complex, report);
+        find_acute_angles(complex, rounding, report);
+    }
+    find_surface_defects(complex, report);
+    out.diagnosis.smallest = find_smallest_features(complex);
+    find_near_misses(complex, *near, report);
+}
+
+Diagnosis examine(const Plc& plc, const ExamineOptions& options) {
+    constexpr double kNear = 1e-4;  // elements there would be ten thousand times smaller than the model: worth a look
+    if (options.near && !(*options.near >= 0 && std::isfinite(*options.near)))
+        throw MeshError(ErrorCode::bad_options, Stage::validate, fmt::format("the distance of near misses must be 0 or more, not {}", *options.near));
+    MeshOptions meshing;
+    meshing.coplanar_tolerance = options.coplanar_tolerance;
+    ValidPlcBuilder builder(plc, meshing);
+    Box box;
+    for (const Vec3& p : plc.vertices)
+        if (in_exact_range(p)) box.add(p);
+    builder.near = options.near.value_or(box.empty() ? 0 : kNear * distance(box.low, box.high));
+    builder.run();
+    builder.summarise();
+    return std::move(builder.out.diagnosis);
 }
 
 Diagnosis diagnose(const Plc& plc, const MeshOptions& options) {
