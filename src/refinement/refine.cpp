@@ -445,8 +445,16 @@ RunGuard::Verdict Refiner::refine() {
     frugal_from_ += static_cast<std::size_t>(std::min(2 * sizes_.expected_vertices(), 1e9));
     split_sized_boundary();
     enqueue_all();
-    keeps_last_ = max_vertices_.has_value();
-    const RunGuard::Verdict verdict = drain();
+    keeps_last_ = max_vertices_.has_value() || boundary_.acute().any();
+    RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
+    try {
+        verdict = drain();
+    } catch (const MeshError& e) {
+        // A cascade at acute input that met the ceiling: the mesh before it is as good as any.
+        if (e.code() != ErrorCode::budget_exhausted || !last_) throw;
+        mesh_ = std::move(*last_);
+        verdict = RunGuard::Verdict::out_of_vertices;
+    }
     keeps_last_ = false;
     if (last_ && guard_.has_too_many(mesh_.vertex_count())) mesh_ = std::move(*last_);
     last_.reset();
@@ -454,10 +462,11 @@ RunGuard::Verdict Refiner::refine() {
 }
 
 /// A cascade may take more vertices than are left, by hundreds: then the last copy is the result. One is made whenever half as many are left as at the
-/// one before, so there are few, and little is lost.
+/// one before, so there are few, and little is lost; where only the algorithm's own ceiling is to be feared, whenever there are twice as many.
 void Refiner::keep_last() {
-    const std::uint64_t count = mesh_.vertex_count(), left = *max_vertices_ - std::min(count, *max_vertices_);
-    if ((last_ && left > left_at_last_ / 2) || left == 0 || !guard_.can_double()) return;
+    const std::uint64_t count = mesh_.vertex_count(), left = max_vertices_ ? *max_vertices_ - std::min(count, *max_vertices_) : count;
+    const bool due = !last_ || (max_vertices_ ? left <= left_at_last_ / 2 : count >= 2 * left_at_last_);
+    if (!due || left == 0 || !guard_.can_double()) return;
     last_ = mesh_;
     left_at_last_ = left;
 }

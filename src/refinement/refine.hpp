@@ -89,7 +89,7 @@ private:
     RunGuard& guard_;
     AcuteExemptions exemptions_;
     std::optional<ConformingMesh> last_;  // of refine(), with fewer vertices than the user allows
-    std::uint64_t left_at_last_ = 0;      // vertices that were left then
+    std::uint64_t left_at_last_ = 0;      // vertices that were left then, or that were there if the user allows any number
     bool keeps_last_ = false;
     SizeField sizes_;
     double max_radius_edge_;

@@ -266,7 +266,13 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
             last = mesh_;
             last_worst = worst_cosine();
         }
-        verdict = split_worse_than(rung_cosine);
+        try {
+            verdict = split_worse_than(rung_cosine);
+        } catch (const MeshError& e) {  // a cascade at acute input met the algorithm's ceiling: half done, it is worth nothing
+            if (e.code() != ErrorCode::budget_exhausted) throw;
+            mesh_ = std::move(*last);
+            return RunGuard::Verdict::out_of_vertices;
+        }
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
     reached = !below();
