@@ -71,7 +71,7 @@ class Models:
         verdict = judge(self.arguments.referee, mesh, plain, 20, tolerance, exempt=exempt if os.path.exists(exempt) else None, flat_angle=bend)
         cells.update(tolerance=tolerance, flat_angle=bend, ok=verdict["ok"], why="; ".join(verdict["failures"]))
         if "quality" in verdict:
-            quality = verdict["quality"]["all"]
+            quality = verdict["quality"]["all"] or {"min_dihedral": float("nan"), "max_radius_edge": float("nan")}
             cells.update(vertices=verdict["vertices"], tets=verdict["tets"], exempt=verdict["exempt"], min_dihedral=quality["min_dihedral"],
                          max_radius_edge=quality["max_radius_edge"])
         if result.code not in (0, 1):

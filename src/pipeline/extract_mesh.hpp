@@ -9,6 +9,10 @@ namespace wellmesh {
 /// The domain's part of the mesh, vertices renumbered in order of insertion; ghosts, holes and the outside are left behind.
 /// @param order  gets the tetrahedra in the order of the output.
 [[nodiscard]] TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order);
+[[nodiscard]] inline TetMesh extract_mesh(const ConformingMesh& mesh) {
+    std::vector<TetId> order;
+    return extract_mesh(mesh, order);
+}
 
 /// Largest angle by which two subfaces of one facet bend in an edge that is no subsegment: 0 but for rounding.
 [[nodiscard]] double largest_bend_rad(const TetMesh& mesh);

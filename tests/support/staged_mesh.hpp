@@ -24,10 +24,11 @@ struct StagedMesh {
     ValidPlc plc;
     RunGuard guard;
     ConformingMesh mesh;
+    AcuteGeometry acute;
     BoundaryRefiner boundary;
 
     explicit StagedMesh(const Plc& input, const MeshOptions& wanted = {})
-        : options(wanted), plc(validate(input, options)), guard(options.limits, control), mesh(plc), boundary(mesh, guard, options.seed) {}
+        : options(wanted), plc(validate(input, options)), guard(options.limits, control), mesh(plc), acute(plc), boundary(mesh, guard, options.seed, acute) {}
     StagedMesh(const StagedMesh&) = delete;
     StagedMesh& operator=(const StagedMesh&) = delete;
 

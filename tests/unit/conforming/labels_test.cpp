@@ -119,7 +119,7 @@ public:
     }
 
     VertexId insert(const Spot& spot, const Cavity& cavity) {
-        return mesh_.insert(cavity, spot.where, {spot.where.carrier, InsertionReason::radius_edge, spot.where.carrier_id, VertexId{}, 0});
+        return mesh_.insert(cavity, spot.where, {.reason = InsertionReason::radius_edge});
     }
 
     VertexId steiner_vertex(CarrierKind kind) {
