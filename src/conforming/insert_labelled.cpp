@@ -154,9 +154,9 @@ bool ConformingMesh::holds_carrier(const Cavity& cavity, const Placement& where)
     return false;
 }
 
-/// @return whether anything is.
+/// @return whether a facet is: then cells leak.
 bool ConformingMesh::note_destroyed(const Placement& where) {
-    const std::size_t before = broken_facets_.size() + broken_segments_.size();
+    const std::size_t before = broken_facets_.size();
     for (const InteriorFace& f : interior_)
         if (!f.used && f.boundary == InteriorFace::kNotOnBoundary) broken_facets_.push_back(f.facet);
     for (const Subsegment& s : interior_segments_)
@@ -170,7 +170,7 @@ bool ConformingMesh::note_destroyed(const Placement& where) {
         };
         if (std::none_of(captured_.begin(), captured_.end(), at_edge)) broken_facets_.push_back(e.facet);
     }
-    return broken_facets_.size() + broken_segments_.size() != before;
+    return broken_facets_.size() != before;
 }
 
 /// Reads everything that the insertion needs to know about the cavity, and finds how the surface will run.

@@ -14,7 +14,7 @@
 namespace wellmesh::testing {
 namespace {
 
-constexpr std::uint64_t kDefaultCases = 60, kGroups = 12;
+constexpr std::uint64_t kDefaultCases = 20, kGroups = 10;
 
 std::uint64_t cases() {
     const char* const asked = std::getenv("WELLMESH_ACUTE_CASES");

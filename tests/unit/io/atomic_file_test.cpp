@@ -196,7 +196,7 @@ TEST(Cancelled, AStopLeavesNothing) {
     std::stop_source source;
     source.request_stop();
     for (const char* const name : {"a.mesh", "a.vtu", "a.msh", "a.node"})
-        expect_error(ErrorCode::cancelled, {"cancelled"},
+        expect_error(ErrorCode::cancelled, {"interrupted"},
                      [&] { write_mesh(testing::sample_mesh(3), directory / name, {.stop = source.get_token()}); });
     EXPECT_TRUE(directory.files().empty());
 }
