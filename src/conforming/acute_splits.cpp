@@ -22,6 +22,8 @@ constexpr double kProjectionDepth = 0.95;  // of the radius: what encroaches by 
 /// Splits for conformity need but little jitter; each bit of it costs vertices on symmetric input.
 constexpr double kConformityJitter = 0.005;
 
+/// Vertices nearer to each other than this part of a triangle's shortest side would be one, but for rounding.
+constexpr double kSameVertex = 1e-9;
 /// Within this part of the radius of a Gabriel subface's sphere its facet goes on, up to subsegments that are encroached.
 constexpr double kSurelyInside = 0.99;
 /// Only subsegments longer than a few of a point's heights over them are told from others that face away.
@@ -282,13 +284,13 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std:
         place.witness = {middle, CarrierKind::facet, f.value()};
         return found(middle);
     };
-    // A copy within rounding of a vertex would be that vertex once more.
-    if (!found(place.point) || distance_to_nearest(mesh_, cavity_) < 1e-9 * shortest_side(a, b, c))
-        if (!retreat()) return SplitOutcome::gone;
+    // A copy, or a point of a ball's sphere, within rounding of a vertex would be that vertex once more.
+    const auto is_new = [&](const Vec3& p) { return found(p) && distance_to_nearest(mesh_, cavity_) >= kSameVertex * shortest_side(a, b, c); };
+    if (!is_new(place.point) && !retreat()) return SplitOutcome::gone;
     if (const VertexId v = ball_around(cavity_); v.valid() && !place.info.ball.valid()) {
         const Vec3 out = cavity_.point - mesh_.point(v);
         const Vec3 p = project_to_facet(facet, mesh_.point(v) + (acute_.ball_radius(v) / norm(out)) * out);
-        if (found(p)) place.info.ball = v;
+        if (is_new(p)) place.info.ball = v;
         else if (!retreat()) return SplitOutcome::gone;
     }
     find_encroached(cavity_, where, encroached_segments_, encroached_faces_);

@@ -122,9 +122,9 @@ std::vector<VertexId> ConformingMesh::steiner_vertices_of(SegmentId s) const {
     return out;
 }
 
-bool ConformingMesh::is_subsegment(VertexId a, VertexId b) {
+SegmentId ConformingMesh::segment_of_edge(VertexId a, VertexId b) {
     const TetId t = tri_.find_edge(a, b);
-    return t.valid() && segment_at(t, kEdgeOf[tets().find_corner(t, a)][tets().find_corner(t, b)]).valid();
+    return t.valid() ? segment_at(t, kEdgeOf[tets().find_corner(t, a)][tets().find_corner(t, b)]) : SegmentId{};
 }
 
 // ------------------------------------------------------------------------------------------------ labels

@@ -2,7 +2,6 @@
 #include "conforming/facet_delaunay.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "conforming/place_point.hpp"
 #include "core/check.hpp"
@@ -22,10 +21,6 @@ void FacetDelaunay::collect_vertices(const ConformingMesh& mesh) {
     for (const VertexId v : mesh.steiner_vertices_of(facet_)) vertices_.push_back(v);
     // In a coordinate plane the coordinates themselves are exact, and their lexicographic order, which breaks ties, is the mesh's own.
     const Vec3& n = facet.normal;
-    double largest = 0;
-    for (const VertexId v : vertices_) largest = std::max({largest, std::abs(mesh.point(v).x), std::abs(mesh.point(v).y), std::abs(mesh.point(v).z)});
-    // A point is off its place by a few ulp, or by what the input itself is off its plane; 16 covers the frame's and the outline's share.
-    rounding_ = 16 * std::max(largest * 0x1p-52, facet.tolerance);
     for (const VertexId v : vertices_) {
         const Vec3& p = mesh.point(v);
         if (n.y == 0 && n.z == 0) {
@@ -74,23 +69,35 @@ void FacetDelaunay::triangulate() {
     }
 }
 
-bool FacetDelaunay::is_inside(const Vec3& uv, const ConformingMesh& mesh) const {
-    const ValidFacet& facet = mesh.plc().facets[facet_.index()];
-    const auto local = [&](VertexId v) {
-        return static_cast<std::uint32_t>(std::lower_bound(facet.vertices.begin(), facet.vertices.end(), v) - facet.vertices.begin());
-    };
-    const auto cross2 = [](const Vec3& a, const Vec3& b, const Vec3& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); };
+/// On which sides of its segments the facet lies, in the plane of flat_.
+std::map<SegmentId, FacetDelaunay::InnerSides> FacetDelaunay::inner_sides(const ConformingMesh& mesh) const {
+    const ValidPlc& plc = mesh.plc();
+    const ValidFacet& facet = plc.facets[facet_.index()];
+    const auto flat = [&](VertexId v) { return flat_[static_cast<std::size_t>(std::lower_bound(facet.vertices.begin(), facet.vertices.end(), v) - facet.vertices.begin())]; };
+    double twice_area = 0;  // flat_ may be mirrored
+    std::vector<std::pair<VertexId, VertexId>> edges;
     for (const auto& t : facet.triangles) {
-        const Vec3 &a = flat_[local(t[0])], &b = flat_[local(t[1])], &c = flat_[local(t[2])];
-        const double x = cross2(a, b, uv), y = cross2(b, c, uv), z = cross2(c, a, uv);
-        const double slack = 1e-9 * std::abs(x + y + z);  // a point on an edge between two triangles must be in one of them
-        if ((x >= -slack && y >= -slack && z >= -slack) || (x <= slack && y <= slack && z <= slack)) return true;
+        const Vec3 a = flat(t[0]), u = flat(t[1]) - a, v = flat(t[2]) - a;
+        twice_area += u.x * v.y - u.y * v.x;
+        for (std::size_t k = 0; k < 3; ++k) edges.push_back({t[k], t[(k + 1) % 3]});
     }
-    return false;
+    std::sort(edges.begin(), edges.end());
+    std::map<SegmentId, InnerSides> sides;
+    for (const SegmentId s : facet.segments) {
+        const auto& ends = plc.segments[s.index()].ends;
+        const bool forth = std::binary_search(edges.begin(), edges.end(), std::pair{ends[0], ends[1]});
+        const bool back = std::binary_search(edges.begin(), edges.end(), std::pair{ends[1], ends[0]});
+        sides[s] = {flat(ends[1]) - flat(ends[0]), twice_area > 0 ? forth : back, twice_area > 0 ? back : forth};
+    }
+    return sides;
 }
 
-/// Drops the triangles outside the facet: components between subsegments, each judged at the middle of its largest triangle.
+/// Drops the triangles outside the facet: components between subsegments, each judged by the sides of the subsegments that it has. Coordinates could
+/// not tell: rounding bends straight outlines inwards, and what closes the hull there is as thin as the rounding.
 void FacetDelaunay::keep_inside(ConformingMesh& mesh) {
+    const auto sides = inner_sides(mesh);
+    double twice_area = 0;
+    for (const auto& c : triangles_) twice_area += area2(c[0], c[1], c[2]);
     std::vector<std::uint32_t> component(triangles_.size(), kNone);
     std::vector<char> inside;
     for (std::uint32_t seed = 0; seed < triangles_.size(); ++seed) {
@@ -98,30 +105,26 @@ void FacetDelaunay::keep_inside(ConformingMesh& mesh) {
         const auto id = static_cast<std::uint32_t>(inside.size());
         std::vector<std::uint32_t> stack{seed};
         component[seed] = id;
-        std::uint32_t largest = seed;
-        double most = 0;
+        double vote = 0;  // length of outline that has it inside, minus that which has it outside: rounding may turn short pieces
         while (!stack.empty()) {
             const std::uint32_t t = stack.back();
             stack.pop_back();
             const auto& c = triangles_[t];
-            const double area = std::abs(area2(c[0], c[1], c[2]));
-            if (area > most) {
-                most = area;
-                largest = t;
-            }
             for (std::size_t k = 0; k < 3; ++k) {
-                const std::uint32_t n = neighbours_[t][k];
-                if (n == kNone || component[n] != kNone) continue;
-                if (mesh.is_subsegment(vertices_[c[(k + 1) % 3]], vertices_[c[(k + 2) % 3]])) continue;
-                component[n] = id;
-                stack.push_back(n);
+                const std::uint32_t n = neighbours_[t][k], from = c[(k + 1) % 3], to = c[(k + 2) % 3];
+                if (n != kNone && component[n] == id) continue;
+                const auto side = sides.find(mesh.segment_of_edge(vertices_[from], vertices_[to]));
+                if (side != sides.end()) {
+                    const Vec3 edge = flat_[to] - flat_[from];
+                    const bool on_left = (dot(edge, side->second.along) > 0) == (twice_area > 0);
+                    vote += ((on_left ? side->second.left : side->second.right) ? 1 : -1) * norm(edge);
+                } else if (n != kNone && component[n] == kNone) {
+                    component[n] = id;
+                    stack.push_back(n);
+                }
             }
         }
-        const auto& c = triangles_[largest];
-        const Vec3 middle = flat_[c[0]] + (1.0 / 3) * ((flat_[c[1]] - flat_[c[0]]) + (flat_[c[2]] - flat_[c[0]]));
-        // Rounded points of a straight outline may lie inside the line: then slivers, no thicker than rounding, close the hull.
-        const double base = std::sqrt(std::max({squared_distance(flat_[c[0]], flat_[c[1]]), squared_distance(flat_[c[1]], flat_[c[2]]), squared_distance(flat_[c[2]], flat_[c[0]])}));
-        inside.push_back(most > base * rounding_ && is_inside(middle, mesh) ? 1 : 0);
+        inside.push_back(vote > 0 ? 1 : 0);
     }
     std::vector<std::uint32_t> renumbered(triangles_.size(), kNone);
     std::uint32_t kept = 0;
@@ -137,6 +140,7 @@ void FacetDelaunay::keep_inside(ConformingMesh& mesh) {
     }
     triangles_.resize(kept);
     neighbours_.resize(kept);
+    WELLMESH_CHECK(Stage::conform, kept > 0);
 }
 
 /// Advances a front from the outline of a cluster of missing triangles over faces of the mesh until the cluster is covered.
@@ -214,7 +218,7 @@ std::vector<FacetDelaunay::Missing> FacetDelaunay::match_faces(ConformingMesh& m
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t n = neighbours_[cluster[i]][k];
                 const auto& c = triangles_[cluster[i]];
-                if (n == kNone || missing[n] != 1 || mesh.is_subsegment(vertices_[c[(k + 1) % 3]], vertices_[c[(k + 2) % 3]])) continue;
+                if (n == kNone || missing[n] != 1 || mesh.segment_of_edge(vertices_[c[(k + 1) % 3]], vertices_[c[(k + 2) % 3]]).valid()) continue;
                 missing[n] = 2;
                 cluster.push_back(n);
             }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
@@ -26,10 +27,14 @@ public:
 
 private:
     using Triangle = std::array<std::uint32_t, 3>;  // local vertex numbers, counter-clockwise about the facet's normal
+    struct InnerSides {
+        Vec3 along{};  // from the segment's first end to its second, in the plane
+        bool left = false, right = false;
+    };
     void collect_vertices(const ConformingMesh& mesh);
     void triangulate();
     void keep_inside(ConformingMesh& mesh);
-    [[nodiscard]] bool is_inside(const Vec3& uv, const ConformingMesh& mesh) const;
+    [[nodiscard]] std::map<SegmentId, InnerSides> inner_sides(const ConformingMesh& mesh) const;
     bool cover(ConformingMesh& mesh, const std::vector<std::size_t>& cluster, std::vector<TetFace>& faces) const;
     [[nodiscard]] double area2(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
 
@@ -39,7 +44,6 @@ private:
     std::vector<Triangle> triangles_;
     std::vector<std::array<std::uint32_t, 3>> neighbours_;  // of each triangle, opposite its corners
     std::vector<TetFace> faces_;
-    double rounding_ = 0;  // input units: outlines are straight to within this
     static constexpr std::uint32_t kNone = 0xffffffffU;
 };
 
