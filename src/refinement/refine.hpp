@@ -47,6 +47,8 @@ public:
     /// The acute feature of the input that excuses a tetrahedron which misses a goal: one that it touches, or one whose ball holds the point
     /// that would split it. Empty if there is none.
     [[nodiscard]] std::optional<ForcedBy> forced_by(TetId t);
+    /// False: the input has no acute angles.
+    [[nodiscard]] bool knows_forced() const { return boundary_.acute().any(); }
     [[nodiscard]] const RefineStatistics& statistics() const { return statistics_; }
     [[nodiscard]] const SizeField& sizes() const { return sizes_; }
     /// Sets the guard of Theorem 4.2: no edge below its bound is made for quality. The reference is the shortest edge of the mesh as it is now,

@@ -236,6 +236,7 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
     const std::size_t first_new = mesh_.vertex_slots();
     for (const Bad& b : left_) {
         if (b.badness <= cosine) break;
+        if (given_up_.contains(key_of(b.corners))) continue;
         if (std::any_of(b.corners.begin(), b.corners.end(), [&](VertexId v) { return marked_[v.index()] == stamp; })) continue;
         const TetId t = find_tet(mesh_, b.corners);
         if (!t.valid()) continue;
@@ -255,9 +256,11 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
 
 /// Splits and moves until nothing is worse than this rung of the ladder.
 RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_at_start, bool& reached) {
-    const auto below = [&] { return std::any_of(left_.begin(), left_.end(), [&](const Bad& b) { return b.badness > rung_cosine; }); };
+    const auto is_below = [&](const Bad& b) { return b.badness > rung_cosine && !given_up_.contains(key_of(b.corners)); };
+    const auto below = [&] { return std::any_of(left_.begin(), left_.end(), is_below); };
     std::optional<ConformingMesh> last;
     double last_worst = 0;
+    std::size_t last_left = 0;
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     for (unsigned round = 0; below() && verdict == RunGuard::Verdict::go_on; ++round) {
         const bool spent = static_cast<double>(mesh_.vertex_count()) > kVertexBudget * static_cast<double>(vertices_at_start) + kVertexAllowance;
@@ -265,6 +268,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
         if (!last) {
             last = mesh_;
             last_worst = worst_cosine();
+            last_left = left_.size();
         }
         try {
             verdict = split_worse_than(rung_cosine);
@@ -276,7 +280,19 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
     reached = !below();
-    if (!reached && last && (last_worst <= worst_cosine() || guard_.has_too_many(mesh_.vertex_count()))) mesh_ = std::move(*last);
+    if (reached) return verdict;
+    // Beside what an acute angle forces some tetrahedra stay for ever, which says nothing about the others.
+    const bool by_number = refiner_.knows_forced();
+    const bool no_better = by_number ? last_left <= left_.size() : last_worst <= worst_cosine();
+    if (last && (no_better || guard_.has_too_many(mesh_.vertex_count()))) {
+        mesh_ = std::move(*last);
+        collect_bad();
+    }
+    if (by_number) {
+        for (const Bad& b : left_)
+            if (b.badness > rung_cosine) given_up_.insert(key_of(b.corners));
+        reached = true;
+    }
     return verdict;
 }
 
@@ -304,11 +320,12 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     stuck_.clear();
     tried_.assign(tried_.size(), {});
     collect_bad();
+    given_up_.clear();
     leaves_forced_ = false;
     RunGuard::Verdict verdict = settle(LastResort::remove_or_insert);
     leave_forced_alone();
     bool reached = true;
-    for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left_.empty(); rung += kRungDeg)
+    for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left_.empty() && rung < angle_deg + kRungDeg; rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices_at_start, reached);
     return verdict;
 }

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "conforming/boundary_refiner.hpp"
@@ -99,6 +100,7 @@ private:
     std::vector<std::uint64_t> touched_;             // per vertex: when its star changed last
     std::vector<std::uint64_t> marked_;              // per vertex: stamp of the last collection that it belongs to
     std::unordered_map<std::uint64_t, Stuck> stuck_;  // by corners; looked up, never iterated
+    std::unordered_set<std::uint64_t> given_up_;     // by corners: tetrahedra that no rung mended
     std::vector<Tried> tried_;                       // per vertex
     std::vector<Bad> heap_, left_;
     std::vector<VertexId> around_;
