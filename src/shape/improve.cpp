@@ -53,6 +53,13 @@ double ShapeImprover::worst_cosine() const {
     return worst;
 }
 
+/// Of the shape, and of what refinement left too long and thin beside acute angles without being excused by them.
+double ShapeImprover::badness_of(TetId t) {
+    const double shape = judge_.shape_badness(t);
+    if (!refiner_.knows_forced() || judge_.keeps_radius_edge(t) || refiner_.forced_by(t)) return shape;
+    return kNoAngleCosine;
+}
+
 void ShapeImprover::push(TetId t, double cosine) {
     heap_.push_back({cosine, mesh_.tets().corners(t)});
     std::push_heap(heap_.begin(), heap_.end());
@@ -64,7 +71,7 @@ void ShapeImprover::collect_bad() {
     for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
         const TetId t{i};
         if (!judge_.counts(t)) continue;
-        const double cosine = judge_.shape_badness(t);
+        const double cosine = badness_of(t);
         if (cosine > goal_cosine_ && !is_left_alone(t)) left_.push_back({cosine, mesh_.tets().corners(t)});
     }
 }
@@ -80,7 +87,7 @@ void ShapeImprover::touch(const std::vector<TetId>& tets) {
         for (const VertexId v : mesh_.tets().corners(t))
             if (v != kInfiniteVertex) touched_[v.index()] = clock_;
         if (!judge_.counts(t)) continue;
-        if (const double cosine = judge_.shape_badness(t); cosine > goal_cosine_ && !is_left_alone(t)) push(t, cosine);
+        if (const double cosine = badness_of(t); cosine > goal_cosine_ && !is_left_alone(t)) push(t, cosine);
     }
 }
 
@@ -89,6 +96,7 @@ bool ShapeImprover::is_left_alone(TetId t) const { return leaves_forced_ && refi
 
 void ShapeImprover::leave_forced_alone() {
     leaves_forced_ = true;
+    if (refiner_.knows_forced()) mover_.excuses = [this](TetId t) { return judge_.keeps_size(t) && is_left_alone(t); };
     std::erase_if(left_, [&](const Bad& b) {
         const TetId t = find_tet(mesh_, b.corners);
         return !t.valid() || is_left_alone(t);
@@ -156,7 +164,7 @@ RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) 
         heap_.pop_back();
         const TetId t = find_tet(mesh_, bad.corners);
         if (!t.valid()) continue;
-        bad.badness = judge_.shape_badness(t);  // its corners may have moved since
+        bad.badness = badness_of(t);  // its corners may have moved since
         if (bad.badness <= goal_cosine_) continue;
         const RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), heap_.size() + 1);
         if (verdict != RunGuard::Verdict::go_on) return verdict;
@@ -166,7 +174,7 @@ RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) 
     std::erase_if(left_, [&](Bad& b) {
         const TetId t = find_tet(mesh_, b.corners);
         if (!t.valid()) return true;
-        b.badness = judge_.shape_badness(t);
+        b.badness = badness_of(t);
         return b.badness <= goal_cosine_;
     });
     return RunGuard::Verdict::go_on;
@@ -322,6 +330,7 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     collect_bad();
     given_up_.clear();
     leaves_forced_ = false;
+    mover_.excuses = {};
     RunGuard::Verdict verdict = settle(LastResort::remove_or_insert);
     leave_forced_alone();
     bool reached = true;

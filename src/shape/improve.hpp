@@ -80,6 +80,7 @@ private:
     RunGuard::Verdict climb(double rung_cosine, std::size_t vertices_at_start, bool& reached);
     RunGuard::Verdict split_worse_than(double cosine);
     void collect_bad();
+    [[nodiscard]] double badness_of(TetId t);
     [[nodiscard]] bool is_left_alone(TetId t) const;
     void leave_forced_alone();
     void touch(const std::vector<TetId>& tets);

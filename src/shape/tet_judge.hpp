@@ -50,6 +50,21 @@ public:
         const auto& c = mesh_.tets().corners(t);
         return badness(mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]), mesh_.cell(t));
     }
+    /// Is t within the bounds of the size field, whatever its shape?
+    [[nodiscard]] bool keeps_size(TetId t) const {
+        const auto& k = mesh_.tets().corners(t);
+        const TetSize size = sizes_.of(mesh_.point(k[0]), mesh_.point(k[1]), mesh_.point(k[2]), mesh_.point(k[3]), mesh_.cell(t));
+        const Vec3 &a = mesh_.point(k[0]), u = mesh_.point(k[1]) - a, v = mesh_.point(k[2]) - a, w = mesh_.point(k[3]) - a;
+        const double det = determinant(u, v, w);
+        return squared_norm(scaled_circumcentre(u, v, w)) <= 4 * det * det * kSizeTolerance * kSizeTolerance * size.max_squared_circumradius && det <= 6 * size.max_volume;
+    }
+    [[nodiscard]] bool keeps_radius_edge(TetId t) const {
+        const auto& k = mesh_.tets().corners(t);
+        const Vec3 &a = mesh_.point(k[0]), u = mesh_.point(k[1]) - a, v = mesh_.point(k[2]) - a, w = mesh_.point(k[3]) - a;
+        const double det = determinant(u, v, w);
+        const double squared_edge = std::min({squared_norm(u), squared_norm(v), squared_norm(w), squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
+        return squared_norm(scaled_circumcentre(u, v, w)) <= 4 * det * det * squared_radius_edge_ * squared_edge;
+    }
     /// Badness of the shape alone, bounds or not.
     [[nodiscard]] double shape_badness(TetId t) const {
         const auto& k = mesh_.tets().corners(t);

@@ -181,8 +181,8 @@ double VertexMover::try_point(const Vec3& p, double limit) {
 bool VertexMover::fits(double limit) const {
     for (const TetId t : changed_) {
         if (!mesh_.tets().is_live(t)) continue;
-        if (judge_.counts(t) && judge_.badness(t) > limit) return false;
         if (boundary_.has_encroached(t)) return false;
+        if (judge_.counts(t) && judge_.badness(t) > limit && !(excuses && excuses(t))) return false;
     }
     return true;
 }

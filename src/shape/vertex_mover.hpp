@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "conforming/boundary_refiner.hpp"
@@ -36,6 +37,9 @@ public:
     bool smooth(VertexId v, double floor);
     /// Takes v out if what fills the hole is at least as good as `limit`, or better than the star was.
     bool remove(VertexId v, double limit);
+
+    /// Tetrahedra whose shape stops no removal. Empty: there are none.
+    std::function<bool(TetId)> excuses{};
 
     /// Takes v out if the mesh conforms without it, whatever its shape and even if something is encroached then. For chains of changes, which
     /// look at that in the end.
