@@ -19,6 +19,7 @@ constexpr double kVertexBudget = 1.5;     // splits may not add more than half t
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
 constexpr unsigned kTriesUntouched = 3;   // failures after which a tetrahedron rests until its neighbourhood changes
 constexpr unsigned kTriesInAll = 4;       // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
+constexpr unsigned kLastTries = 3;
 constexpr double kRungDeg = 5;
 constexpr double kFirstRungDeg = 30;      // of moves alone, which mostly reach it, and do so better straight away than from rung to rung
 constexpr double kStraightDeg = 35;       // goals up to this are mostly reached, and are aimed at straight away
@@ -96,7 +97,6 @@ bool ShapeImprover::is_left_alone(TetId t) const { return leaves_forced_ && refi
 
 void ShapeImprover::leave_forced_alone() {
     leaves_forced_ = true;
-    if (refiner_.knows_forced()) mover_.excuses = [this](TetId t) { return judge_.keeps_size(t) && is_left_alone(t); };
     std::erase_if(left_, [&](const Bad& b) {
         const TetId t = find_tet(mesh_, b.corners);
         return !t.valid() || is_left_alone(t);
@@ -330,12 +330,20 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     collect_bad();
     given_up_.clear();
     leaves_forced_ = false;
-    mover_.excuses = {};
     RunGuard::Verdict verdict = settle(LastResort::remove_or_insert);
     leave_forced_alone();
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left_.empty() && rung < angle_deg + kRungDeg; rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices_at_start, reached);
+    // What no rung mended starts afresh, with more of its surroundings moved.
+    if (refiner_.knows_forced() && !left_.empty()) mover_.excuses = [this](TetId t) { return judge_.keeps_size(t) && is_left_alone(t); };
+    for (unsigned r = 0; refiner_.knows_forced() && r < kLastTries && !left_.empty() && verdict == RunGuard::Verdict::go_on; ++r) {
+        stuck_.clear();
+        tried_.assign(tried_.size(), {});
+        verdict = smooth_around_bad(2);
+        if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples << (r + 1), kPatientPasses, LastResort::remove_or_insert);
+    }
+    mover_.excuses = {};
     return verdict;
 }
 

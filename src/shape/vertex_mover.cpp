@@ -19,6 +19,7 @@ constexpr double kGain = 0.1;        // of the way to the goal, in cosine: less 
 constexpr double kFlatCosine = 0.99996;  // of half a degree: where the input is acute anything better than flat is progress,
 constexpr std::array kFineSteps{0.1, -0.1, 0.03, -0.03, 0.01, -0.01, 0.003, -0.003};  // and small steps, in reaches, are all that fit between copies
 constexpr std::size_t kTrials = 3;   // how many of the best candidates are tried in earnest where the boundary may still refuse them
+constexpr std::size_t kExcusedTrials = 12;  // and where the star has tetrahedra that are excused, which candidates do not know
 
 }  // namespace
 
@@ -182,9 +183,18 @@ bool VertexMover::fits(double limit) const {
     for (const TetId t : changed_) {
         if (!mesh_.tets().is_live(t)) continue;
         if (boundary_.has_encroached(t)) return false;
-        if (judge_.counts(t) && judge_.badness(t) > limit && !(excuses && excuses(t))) return false;
+        if (judge_.counts(t) && judge_.badness(t) > limit && !(excuses && excuses(t) && judge_.shape_badness(t) <= star_cosine_)) return false;
     }
     return true;
+}
+
+/// Badness of the star but for what is excused in it.
+double VertexMover::unexcused_star_cosine(double goal) const {
+    double worst = 0;
+    for (const TetId t : hole_.star)
+        if (judge_.counts(t))
+            if (const double cosine = judge_.shape_badness(t); cosine > worst && !(cosine > goal && excuses(t))) worst = cosine;
+    return worst;
 }
 
 /// Puts the vertex at p, if what comes of it is as promised.
@@ -210,19 +220,23 @@ bool VertexMover::put(const Vec3& p, double limit) {
 bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
     if (!look_at_star(v)) return false;
     propose(worst, samples);
+    const double before = excuses ? unexcused_star_cosine(goal) : star_cosine_;
+    const bool is_excused = before < star_cosine_;
     if (!take_out()) return false;
-    double limit = star_cosine_ - std::max(kWorthwhile, kGain * (star_cosine_ - goal));
-    if (is_flat_at_acute()) limit = kFlatCosine;
-    double best = limit;
+    double limit = before - std::max(kWorthwhile, kGain * (before - goal));
+    if (excuses) limit = std::max(limit, goal);
+    if (before > kFlatCosine && is_flat_at_acute()) limit = kFlatCosine;
+    // What is excused is known once it is there: until then anything goes.
+    double best = is_excused ? kNoAngleCosine : limit;
     ranked_.clear();
     for (const Vec3& p : proposals_) {
         const double cosine = try_point(p, best);
         if (cosine > best) continue;
         ranked_.push_back({p, cosine});
         if (cosine <= goal) break;                                    // good enough
-        if (where_.carrier == CarrierKind::region) best = cosine;     // inside, nothing can spoil the best one later
+        if (where_.carrier == CarrierKind::region && !is_excused) best = cosine;  // inside, nothing can spoil the best one later
     }
-    if (put_best(limit)) {
+    if (put_best(limit, is_excused ? kExcusedTrials : kTrials)) {
         ++statistics_.moves;
         return true;
     }
@@ -231,9 +245,9 @@ bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
 }
 
 /// Puts the vertex at the best of the candidates that the boundary does not refuse.
-bool VertexMover::put_best(double limit) {
+bool VertexMover::put_best(double limit, std::size_t trials) {
     std::stable_sort(ranked_.begin(), ranked_.end(), [](const Candidate& a, const Candidate& b) { return a.cosine < b.cosine; });
-    for (std::size_t k = 0; k < std::min(kTrials, ranked_.size()); ++k)
+    for (std::size_t k = 0; k < std::min(trials, ranked_.size()); ++k)
         if (put(ranked_[k].point, limit)) return true;
     return false;
 }
@@ -285,7 +299,7 @@ bool VertexMover::pull(VertexId v, const Vec3& target, double limit) {
         const Vec3 p = on_carrier(home_ + part * whole);
         if (const double cosine = try_point(p, limit); cosine <= limit) ranked_.push_back({p, cosine});
     }
-    if (put_best(limit)) {
+    if (put_best(limit, kTrials)) {
         ++statistics_.moves;
         return true;
     }

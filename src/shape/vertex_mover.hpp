@@ -38,7 +38,7 @@ public:
     /// Takes v out if what fills the hole is at least as good as `limit`, or better than the star was.
     bool remove(VertexId v, double limit);
 
-    /// Tetrahedra whose shape stops no removal. Empty: there are none.
+    /// Tetrahedra that an acute angle of the input forces: no change has to mend them, nor may it make them worse. Empty: there are none.
     std::function<bool(TetId)> excuses{};
 
     /// Takes v out if the mesh conforms without it, whatever its shape and even if something is encroached then. For chains of changes, which
@@ -63,7 +63,7 @@ private:
     bool take_out();
     void judge_filling();
     void put_back();
-    bool put_best(double limit);
+    bool put_best(double limit, std::size_t trials);
     void note(bool removed);
     bool put(const Vec3& p, double limit);
     void propose(TetId worst, unsigned samples);
@@ -77,6 +77,7 @@ private:
     [[nodiscard]] TetId conflicting_tet(const Vec3& p, double limit);
     [[nodiscard]] bool encroaches_nothing();
     [[nodiscard]] bool fits(double limit) const;
+    [[nodiscard]] double unexcused_star_cosine(double goal) const;
 
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;
