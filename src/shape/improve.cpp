@@ -97,6 +97,7 @@ bool ShapeImprover::is_left_alone(TetId t) const { return leaves_forced_ && refi
 
 void ShapeImprover::leave_forced_alone() {
     leaves_forced_ = true;
+    if (refiner_.knows_forced()) mover_.excuses = [this](TetId t) { return judge_.keeps_size(t) && is_left_alone(t); };
     std::erase_if(left_, [&](const Bad& b) {
         const TetId t = find_tet(mesh_, b.corners);
         return !t.valid() || is_left_alone(t);
@@ -262,6 +263,18 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
     return RunGuard::Verdict::go_on;
 }
 
+/// The same, but a cascade at acute input that meets the algorithm's ceiling is worth nothing half done.
+RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, const ConformingMesh& last) {
+    try {
+        return split_worse_than(cosine);
+    } catch (const MeshError& e) {
+        if (e.code() != ErrorCode::budget_exhausted) throw;
+        mesh_ = last;
+        collect_bad();
+        return RunGuard::Verdict::out_of_vertices;
+    }
+}
+
 /// Splits and moves until nothing is worse than this rung of the ladder.
 RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_at_start, bool& reached) {
     const auto is_below = [&](const Bad& b) { return b.badness > rung_cosine && !given_up_.contains(key_of(b.corners)); };
@@ -278,13 +291,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
             last_worst = worst_cosine();
             last_left = left_.size();
         }
-        try {
-            verdict = split_worse_than(rung_cosine);
-        } catch (const MeshError& e) {  // a cascade at acute input met the algorithm's ceiling: half done, it is worth nothing
-            if (e.code() != ErrorCode::budget_exhausted) throw;
-            mesh_ = std::move(*last);
-            return RunGuard::Verdict::out_of_vertices;
-        }
+        verdict = split_or_go_back(rung_cosine, *last);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
     reached = !below();
@@ -321,6 +328,29 @@ RunGuard::Verdict ShapeImprover::perturb(double angle_deg) {
     return verdict;
 }
 
+/// What no rung mended beside an acute angle, with more of its surroundings moved, and then split.
+RunGuard::Verdict ShapeImprover::try_afresh() {
+    RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
+    mover_.move_beside_excused(true);
+    given_up_.clear();
+    for (unsigned r = 0; r < kLastTries && !left_.empty() && verdict == RunGuard::Verdict::go_on; ++r) {
+        stuck_.clear();
+        tried_.assign(tried_.size(), {});
+        verdict = smooth_around_bad(2);
+        if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples << (r + 1), kPatientPasses, LastResort::remove_or_insert);
+        if (verdict != RunGuard::Verdict::go_on || left_.empty() || !guard_.can_double()) continue;
+        const ConformingMesh last = mesh_;
+        const std::size_t before = left_.size();
+        verdict = split_or_go_back(goal_cosine_, last);
+        if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
+        if (left_.size() < before && !guard_.has_too_many(mesh_.vertex_count())) continue;
+        mesh_ = last;
+        collect_bad();
+    }
+    mover_.move_beside_excused(false);
+    return verdict;
+}
+
 /// All there is, straight at one angle.
 RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_at_start) {
     goal_cosine_ = cosine_of_degrees(angle_deg);
@@ -330,20 +360,13 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     collect_bad();
     given_up_.clear();
     leaves_forced_ = false;
+    mover_.excuses = {};
     RunGuard::Verdict verdict = settle(LastResort::remove_or_insert);
     leave_forced_alone();
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left_.empty() && rung < angle_deg + kRungDeg; rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices_at_start, reached);
-    // What no rung mended starts afresh, with more of its surroundings moved.
-    if (refiner_.knows_forced() && !left_.empty()) mover_.excuses = [this](TetId t) { return judge_.keeps_size(t) && is_left_alone(t); };
-    for (unsigned r = 0; refiner_.knows_forced() && r < kLastTries && !left_.empty() && verdict == RunGuard::Verdict::go_on; ++r) {
-        stuck_.clear();
-        tried_.assign(tried_.size(), {});
-        verdict = smooth_around_bad(2);
-        if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples << (r + 1), kPatientPasses, LastResort::remove_or_insert);
-    }
-    mover_.excuses = {};
+    if (refiner_.knows_forced() && verdict == RunGuard::Verdict::go_on) verdict = try_afresh();
     return verdict;
 }
 

@@ -79,6 +79,8 @@ private:
     RunGuard::Verdict smooth_around_bad(unsigned rings);
     RunGuard::Verdict climb(double rung_cosine, std::size_t vertices_at_start, bool& reached);
     RunGuard::Verdict split_worse_than(double cosine);
+    RunGuard::Verdict split_or_go_back(double cosine, const ConformingMesh& last);
+    RunGuard::Verdict try_afresh();
     void collect_bad();
     [[nodiscard]] double badness_of(TetId t);
     [[nodiscard]] bool is_left_alone(TetId t) const;

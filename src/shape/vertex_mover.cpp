@@ -220,11 +220,12 @@ bool VertexMover::put(const Vec3& p, double limit) {
 bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
     if (!look_at_star(v)) return false;
     propose(worst, samples);
-    const double before = excuses ? unexcused_star_cosine(goal) : star_cosine_;
+    const bool excusing = beside_excused_ && excuses;
+    const double before = excusing ? unexcused_star_cosine(goal) : star_cosine_;
     const bool is_excused = before < star_cosine_;
     if (!take_out()) return false;
     double limit = before - std::max(kWorthwhile, kGain * (before - goal));
-    if (excuses) limit = std::max(limit, goal);
+    if (excusing) limit = std::max(limit, goal);
     if (before > kFlatCosine && is_flat_at_acute()) limit = kFlatCosine;
     // What is excused is known once it is there: until then anything goes.
     double best = is_excused ? kNoAngleCosine : limit;

@@ -40,6 +40,8 @@ public:
 
     /// Tetrahedra that an acute angle of the input forces: no change has to mend them, nor may it make them worse. Empty: there are none.
     std::function<bool(TetId)> excuses{};
+    /// Moves, too? That takes more trials: without, only removals look for what is excused.
+    void move_beside_excused(bool yes) { beside_excused_ = yes; }
 
     /// Takes v out if the mesh conforms without it, whatever its shape and even if something is encroached then. For chains of changes, which
     /// look at that in the end.
@@ -84,7 +86,7 @@ private:
     const TetJudge& judge_;
     std::uint64_t seed_, attempt_ = 0;
     ChangeLog log_;
-    bool follow_gradients_ = false;
+    bool follow_gradients_ = false, beside_excused_ = false;
 
     // The vertex at hand.
     VertexId vertex_{};
