@@ -13,8 +13,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kLeaf = 4;
 
-double coordinate(const Vec3& p, unsigned axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
 Vec3 middle_of(const SizeSource& s) {
     Vec3 sum;
     for (unsigned k = 0; k < s.size; ++k) sum = sum + s.corners[k];
@@ -34,20 +32,15 @@ SourceTree::SourceTree(std::vector<SizeSource> sources, double growth) : sources
 }
 
 std::uint32_t SourceTree::build(std::uint32_t begin, std::uint32_t end) {
-    Node node{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}, kInfinity, begin, end, 0};
+    Node node{{}, kInfinity, begin, end, 0};
     for (std::uint32_t i = begin; i < end; ++i) {
         node.least = std::min(node.least, sources_[i].edge_length);
-        for (unsigned k = 0; k < sources_[i].size; ++k) {
-            const Vec3& p = sources_[i].corners[k];
-            node.low = {std::min(node.low.x, p.x), std::min(node.low.y, p.y), std::min(node.low.z, p.z)};
-            node.high = {std::max(node.high.x, p.x), std::max(node.high.y, p.y), std::max(node.high.z, p.z)};
-        }
+        for (unsigned k = 0; k < sources_[i].size; ++k) node.box.add(sources_[i].corners[k]);
     }
     const auto at = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back(node);
     if (end - begin <= kLeaf) return at;
-    const Vec3 extent = node.high - node.low;
-    const unsigned axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::size_t axis = node.box.longest_axis();
     const std::uint32_t middle = begin + (end - begin) / 2;
     std::nth_element(sources_.begin() + begin, sources_.begin() + middle, sources_.begin() + end, [axis](const SizeSource& s, const SizeSource& t) {
         return coordinate(middle_of(s), axis) < coordinate(middle_of(t), axis);
@@ -59,8 +52,7 @@ std::uint32_t SourceTree::build(std::uint32_t begin, std::uint32_t end) {
 }
 
 double SourceTree::least_in(const Node& node, const Vec3& p) const {
-    const auto outside = [](double v, double low, double high) { return v < low ? low - v : v > high ? v - high : 0.0; };
-    return node.least + growth_ * norm({outside(p.x, node.low.x, node.high.x), outside(p.y, node.low.y, node.high.y), outside(p.z, node.low.z, node.high.z)});
+    return node.least + growth_ * node.box.distance_to(p);
 }
 
 double SourceTree::operator()(const Vec3& p, double bound) const {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "validation/box_tree.hpp"
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
@@ -31,7 +32,7 @@ public:
 
 private:
     struct Node {
-        Vec3 low{}, high{};
+        Box box;
         double least = 0;                  // edge length
         std::uint32_t begin = 0, end = 0;  // sources of a leaf
         std::uint32_t right = 0;           // the left child follows; 0: leaf

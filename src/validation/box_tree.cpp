@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "validation/box_tree.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -36,12 +35,8 @@ std::uint32_t BoxTree::build(std::uint32_t begin, std::uint32_t end) {
     nodes_[id].begin = begin;
     nodes_[id].end = end;
     if (end - begin <= kLeafSize) return id;
-    const std::array<double, 3> extent{box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z};
-    const auto axis = static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
-    const auto centre = [&](std::uint32_t i) {
-        const Box& b = boxes_[i];
-        return axis == 0 ? b.low.x + b.high.x : axis == 1 ? b.low.y + b.high.y : b.low.z + b.high.z;
-    };
+    const std::size_t axis = box.longest_axis();
+    const auto centre = [&](std::uint32_t i) { return coordinate(boxes_[i].low, axis) + coordinate(boxes_[i].high, axis); };
     const std::uint32_t middle = begin + (end - begin) / 2;
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](std::uint32_t a, std::uint32_t b) {
         const double ca = centre(a), cb = centre(b);

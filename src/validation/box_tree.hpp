@@ -3,13 +3,18 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/vec3_math.hpp"
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
+
+/// @param axis  0, 1, 2 for x, y, z
+constexpr double coordinate(const Vec3& p, std::size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
 struct Box {
     Vec3 low{1, 1, 1}, high{0, 0, 0};  ///< empty until a point is added
@@ -26,6 +31,15 @@ struct Box {
         if (b.empty()) return;
         add(b.low);
         add(b.high);
+    }
+    /// Its longest side's; the first one of several.
+    [[nodiscard]] std::size_t longest_axis() const {
+        const Vec3 extent = high - low;
+        return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    }
+    [[nodiscard]] double distance_to(const Vec3& p) const {
+        const auto outside = [](double v, double from, double to) { return v < from ? from - v : v > to ? v - to : 0.0; };
+        return norm({outside(p.x, low.x, high.x), outside(p.y, low.y, high.y), outside(p.z, low.z, high.z)});
     }
     [[nodiscard]] Box grown(double by) const { return {{low.x - by, low.y - by, low.z - by}, {high.x + by, high.y + by, high.z + by}}; }
     [[nodiscard]] bool meets(const Box& b) const {

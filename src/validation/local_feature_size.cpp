@@ -14,13 +14,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kLeaf = 4;
 
-double coordinate(const Vec3& p, unsigned axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
-double squared_distance_to_box(const Vec3& x, const Vec3& low, const Vec3& high) {
-    const auto outside = [](double v, double l, double h) { return v < l ? l - v : v > h ? v - h : 0.0; };
-    return squared_norm({outside(x.x, low.x, high.x), outside(x.y, low.y, high.y), outside(x.z, low.z, high.z)});
-}
-
 bool share_a_number(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
     if (a.size() > b.size()) return share_a_number(b, a);
     // Facets of thousands of vertices meet segments of two: search the longer list.
@@ -53,18 +46,13 @@ LocalFeatureSize::LocalFeatureSize(const ValidPlc& plc) {
 }
 
 std::uint32_t LocalFeatureSize::build(std::uint32_t begin, std::uint32_t end) {
-    Node node{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}, begin, end, 0};
+    Node node{{}, begin, end, 0};
     for (std::uint32_t i = begin; i < end; ++i)
-        for (unsigned k = 0; k < primitives_[i].size; ++k) {
-            const Vec3& p = primitives_[i].corners[k];
-            node.low = {std::min(node.low.x, p.x), std::min(node.low.y, p.y), std::min(node.low.z, p.z)};
-            node.high = {std::max(node.high.x, p.x), std::max(node.high.y, p.y), std::max(node.high.z, p.z)};
-        }
+        for (unsigned k = 0; k < primitives_[i].size; ++k) node.box.add(primitives_[i].corners[k]);
     const auto at = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back(node);
     if (end - begin <= kLeaf) return at;
-    const Vec3 extent = node.high - node.low;
-    const unsigned axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::size_t axis = node.box.longest_axis();
     const auto centre = [axis](const Primitive& p) {
         double sum = 0;
         for (unsigned k = 0; k < p.size; ++k) sum += coordinate(p.corners[k], axis);
@@ -87,7 +75,7 @@ double LocalFeatureSize::operator()(const Vec3& x) const {
     // Boxes and primitives by distance: primitives as negative numbers, so that they come before boxes equally far.
     using Entry = std::pair<double, std::int64_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting;
-    const auto push_node = [&](std::uint32_t n) { waiting.push({std::sqrt(squared_distance_to_box(x, nodes_[n].low, nodes_[n].high)), n}); };
+    const auto push_node = [&](std::uint32_t n) { waiting.push({nodes_[n].box.distance_to(x), n}); };
     if (!nodes_.empty()) push_node(0);
     std::vector<std::uint32_t> met;
     while (!waiting.empty()) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "validation/box_tree.hpp"
 #include "validation/closest_points.hpp"
 #include "validation/valid_plc.hpp"
 
@@ -35,7 +36,7 @@ private:
         std::uint32_t feature = 0;
     };
     struct Node {
-        Vec3 low{}, high{};
+        Box box;
         std::uint32_t begin = 0, end = 0;  // primitives of a leaf
         std::uint32_t right = 0;           // the left child follows; 0: leaf
     };
