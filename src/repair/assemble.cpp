@@ -11,30 +11,6 @@
 namespace wellmesh {
 namespace {
 
-/// Winding number of each cell, 0 outside; nothing where they contradict each other.
-std::optional<std::vector<int>> winding_numbers(const CellMap& map, const std::vector<Piece>& triangles) {
-    std::vector<int> number(map.size(), 0);
-    std::vector<char> known(map.size(), 0);
-    std::vector<std::uint32_t> queue{0};
-    known[0] = 1;
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-        const std::uint32_t c = queue[i];
-        for (const SideId s : map.sides[c]) {
-            const int weight = triangles[s / 2].winding;
-            const std::uint32_t beyond = map.cell_of_side[s ^ 1U];
-            const int value = number[c] + (s % 2 == 0 ? weight : -weight);  // entering through the front goes in once more
-            if (!known[beyond]) {
-                known[beyond] = 1;
-                number[beyond] = value;
-                queue.push_back(beyond);
-            } else if (number[beyond] != value) {
-                return std::nullopt;
-            }
-        }
-    }
-    return number;
-}
-
 class Assembler {
 public:
     Assembler(const Plc& plc, StatedPieces& stated) : plc_(plc), stated_(stated), pieces_(stated.pieces), pieces_of_(plc.facets.size()) {}
@@ -169,7 +145,9 @@ void drop_idle_pieces(Pieces& pieces, bool drop_inner) {
     const EdgeTable edges = make_edge_table(soup);
     const LineQuery lines(points, soup);
     const CellMap map = find_cells(points, soup, edges, lines);
-    const auto winding = winding_numbers(map, pieces.triangles);
+    std::vector<int> weights;
+    for (const Piece& t : pieces.triangles) weights.push_back(t.winding);
+    const auto winding = winding_numbers(map, weights);
     if (!winding) return;
     const auto filled = [&](SideId side) { return (*winding)[map.cell_of_side[side]] != 0; };
     std::size_t kept = 0;

@@ -35,7 +35,6 @@ private:
     [[nodiscard]] std::optional<std::uint32_t> cell_at(const Vec3& p, std::size_t number, const std::string& what);
     void place_hole(std::size_t h);
     void apply_fill_rule();
-    [[nodiscard]] std::optional<std::vector<int>> winding_numbers() const;
     void place_regions();
     void number_rest();
     [[nodiscard]] Vec3 point_inside(std::uint32_t cell) const;
@@ -91,35 +90,12 @@ void CellFiller::place_hole(std::size_t h) {
     is_hole_[*cell] = 1;
 }
 
-/// Winding number of each cell about the input's facets, 0 outside; nothing if they contradict each other.
-std::optional<std::vector<int>> CellFiller::winding_numbers() const {
-    std::vector<int> number(map_.size(), 0);
-    std::vector<char> known(map_.size(), 0);
-    std::vector<std::uint32_t> queue{0};
-    known[0] = 1;
-    while (!queue.empty()) {
-        const std::uint32_t c = queue.back();
-        queue.pop_back();
-        for (const SideId s : map_.sides[c]) {
-            const std::uint32_t t = s / 2, beyond = map_.cell_of_side[s ^ 1U];
-            const int weight = input_.facets[soup_.triangles[t].facet].winding;
-            const int value = number[c] + (s % 2 == 0 ? weight : -weight);  // entering through the front goes in once more
-            if (!known[beyond]) {
-                known[beyond] = 1;
-                number[beyond] = value;
-                queue.push_back(beyond);
-            } else if (number[beyond] != value) {
-                return std::nullopt;
-            }
-        }
-    }
-    return number;
-}
-
 void CellFiller::apply_fill_rule() {
     std::optional<std::vector<int>> winding;
     if (plc_.fill == FillRule::nonzero_winding) {
-        winding = winding_numbers();
+        std::vector<int> weights;
+        for (const SoupTriangle& t : soup_.triangles) weights.push_back(input_.facets[t.facet].winding);
+        winding = winding_numbers(map_, weights);
         if (!winding)
             report_.add(DefectKind::inconsistent_orientation, Severity::note, {},
                         "the facets are not consistently oriented: every bounded cell is filled");

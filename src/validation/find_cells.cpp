@@ -127,6 +127,29 @@ CellMap CellFinder::number_cells() {
 
 }  // namespace
 
+std::optional<std::vector<int>> winding_numbers(const CellMap& map, std::span<const int> weights) {
+    std::vector<int> number(map.size(), 0);
+    std::vector<char> known(map.size(), 0);
+    std::vector<std::uint32_t> queue{0};
+    known[0] = 1;
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+        const std::uint32_t c = queue[i];
+        for (const SideId s : map.sides[c]) {
+            const int weight = weights[s / 2];
+            const std::uint32_t beyond = map.cell_of_side[s ^ 1U];
+            const int value = number[c] + (s % 2 == 0 ? weight : -weight);  // entering through the front goes in once more
+            if (!known[beyond]) {
+                known[beyond] = 1;
+                number[beyond] = value;
+                queue.push_back(beyond);
+            } else if (number[beyond] != value) {
+                return std::nullopt;
+            }
+        }
+    }
+    return number;
+}
+
 std::vector<std::uint32_t> radial_order(std::span<const Vec3> points, std::span<const SoupTriangle> triangles, const EdgeTable& edges, std::size_t edge) {
     const auto around = edges.around(edge);
     std::vector<std::uint32_t> order(around.begin(), around.end());

@@ -2,6 +2,8 @@
 // The cells into which the triangles cut space, found without seeds.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "validation/line_query.hpp"
@@ -20,6 +22,11 @@ struct CellMap {
 /// by lines through them. All decisions are exact. Bounded cells are numbered by their lexicographically smallest corner.
 /// @pre triangles meet only in common vertices and edges (no self-intersection).
 [[nodiscard]] CellMap find_cells(std::span<const Vec3> points, std::span<const SoupTriangle> triangles, const EdgeTable& edges, const LineQuery& lines);
+
+/// Winding number of each cell, 0 outside.
+/// @param weights  by how much each triangle winds about what lies behind its front: how often it is stated, less how often turned over
+/// @return nothing where weights contradict each other: they do not sum to zero about some edge
+[[nodiscard]] std::optional<std::vector<int>> winding_numbers(const CellMap& map, std::span<const int> weights);
 
 /// The corners (3 t + slot) at `edge` in counter-clockwise order about the direction from edge_ends(key)[0] to [1]. Exact.
 [[nodiscard]] std::vector<std::uint32_t> radial_order(std::span<const Vec3> points, std::span<const SoupTriangle> triangles, const EdgeTable& edges, std::size_t edge);
