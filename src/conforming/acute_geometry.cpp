@@ -38,28 +38,18 @@ AcuteGeometry::AcuteGeometry(const ValidPlc& plc) : plc_(&plc), any_(!plc.acute_
 }
 
 void AcuteGeometry::list_incidences() {
-    const std::size_t n = plc_->vertices.size();
-    facet_rows_.assign(n + 1, 0);
-    segment_rows_.assign(n + 1, 0);
-    for (const ValidFacet& f : plc_->facets)
-        for (const VertexId v : f.vertices) ++facet_rows_[v.index() + 1];
-    for (const ValidSegment& s : plc_->segments)
-        for (const VertexId v : s.ends) ++segment_rows_[v.index() + 1];
-    for (std::size_t i = 0; i < n; ++i) {
-        facet_rows_[i + 1] += facet_rows_[i];
-        segment_rows_[i + 1] += segment_rows_[i];
-    }
-    facets_.resize(facet_rows_[n]);
-    segments_.resize(segment_rows_[n]);
-    std::vector<std::uint32_t> facet_end(facet_rows_.begin(), facet_rows_.end() - 1), segment_end(segment_rows_.begin(), segment_rows_.end() - 1);
+    std::vector<std::pair<std::uint32_t, FacetId>> facets;
     for (std::size_t f = 0; f < plc_->facets.size(); ++f) {
         ids_.emplace_back(f);
-        for (const VertexId v : plc_->facets[f].vertices) facets_[facet_end[v.index()]++] = FacetId{f};
+        for (const VertexId v : plc_->facets[f].vertices) facets.emplace_back(v.value(), f);
     }
+    facets_at_ = CompressedRows<FacetId>(plc_->vertices.size(), facets);
+    std::vector<std::pair<std::uint32_t, SegmentId>> segments;
     for (std::size_t s = 0; s < plc_->segments.size(); ++s) {
         segment_ids_.emplace_back(s);
-        for (const VertexId v : plc_->segments[s].ends) segments_[segment_end[v.index()]++] = SegmentId{s};
+        for (const VertexId v : plc_->segments[s].ends) segments.emplace_back(v.value(), s);
     }
+    segments_at_ = CompressedRows<SegmentId>(plc_->vertices.size(), segments);
 }
 
 void AcuteGeometry::list_shared_segments() {
@@ -70,22 +60,19 @@ void AcuteGeometry::list_shared_segments() {
             for (std::size_t j = i + 1; j < facets.size(); ++j) all.push_back({{facets[i].value(), facets[j].value()}, SegmentId{s}});
     }
     std::sort(all.begin(), all.end());
+    std::vector<std::pair<std::size_t, SegmentId>> entries;
     for (const auto& [pair, segment] : all) {
-        if (pairs_.empty() || pairs_.back() != pair) {
-            pairs_.push_back(pair);
-            pair_rows_.push_back(static_cast<std::uint32_t>(pair_segments_.size()));
-        }
-        pair_segments_.push_back(segment);
+        if (pairs_.empty() || pairs_.back() != pair) pairs_.push_back(pair);
+        entries.emplace_back(pairs_.size() - 1, segment);
     }
-    pair_rows_.push_back(static_cast<std::uint32_t>(pair_segments_.size()));
+    pair_segments_ = CompressedRows<SegmentId>(pairs_.size(), entries);
 }
 
 std::span<const SegmentId> AcuteGeometry::shared_segments(FacetId f, FacetId g) const {
     const FacetPair wanted{std::min(f, g).value(), std::max(f, g).value()};
     const auto it = std::lower_bound(pairs_.begin(), pairs_.end(), wanted);
     if (it == pairs_.end() || *it != wanted) return {};
-    const auto k = static_cast<std::size_t>(it - pairs_.begin());
-    return {pair_segments_.data() + pair_rows_[k], pair_segments_.data() + pair_rows_[k + 1]};
+    return pair_segments_[static_cast<std::size_t>(it - pairs_.begin())];
 }
 
 std::span<const FacetId> AcuteGeometry::facets_of(CarrierKind carrier, std::uint32_t id) const {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
+#include "core/compressed_rows.hpp"
 #include "validation/local_feature_size.hpp"
 
 namespace wellmesh {
@@ -60,8 +61,8 @@ public:
     /// tells the sides of segments.
     [[nodiscard]] std::optional<Vec3> direction_on_facet(FacetId f, VertexId v, const CarriedWitness& q, const Vec3& centre) const;
 
-    [[nodiscard]] std::span<const FacetId> facets_at(VertexId v) const { return at(facet_rows_, facets_, v); }
-    [[nodiscard]] std::span<const SegmentId> segments_at(VertexId v) const { return at(segment_rows_, segments_, v); }
+    [[nodiscard]] std::span<const FacetId> facets_at(VertexId v) const { return facets_at_[v.index()]; }
+    [[nodiscard]] std::span<const SegmentId> segments_at(VertexId v) const { return segments_at_[v.index()]; }
     /// Facets and segments whose closure contains a point of this carrier.
     [[nodiscard]] std::span<const FacetId> facets_of(CarrierKind carrier, std::uint32_t id) const;
     [[nodiscard]] std::span<const SegmentId> segments_of(CarrierKind carrier, std::uint32_t id) const;
@@ -74,10 +75,6 @@ private:
         std::uint32_t low = 0, high = 0;
         auto operator<=>(const FacetPair&) const = default;
     };
-    template <class T>
-    static std::span<const T> at(const std::vector<std::uint32_t>& rows, const std::vector<T>& items, VertexId v) {
-        return {items.data() + rows[v.index()], items.data() + rows[v.index() + 1]};
-    }
     void list_incidences();
     void list_shared_segments();
     [[nodiscard]] std::optional<Vec3> rotated_about(SegmentId s, FacetId f, const Vec3& q, const Vec3& centre) const;
@@ -90,12 +87,12 @@ private:
     std::vector<double> acute_deg_;  // smallest acute angle at each input vertex; 180: none
     std::vector<double> ball_;  // radii; below 0: not found yet
     std::optional<LocalFeatureSize> feature_size_;
-    std::vector<std::uint32_t> facet_rows_, segment_rows_;  // compressed rows: what meets at each input vertex
-    std::vector<FacetId> facets_, ids_;                     // ids_[i] = FacetId{i}: spans over single facets
-    std::vector<SegmentId> segments_, segment_ids_;
-    std::vector<FacetPair> pairs_;  // sorted, distinct; pair_rows_ into pair_segments_
-    std::vector<std::uint32_t> pair_rows_;
-    std::vector<SegmentId> pair_segments_;
+    CompressedRows<FacetId> facets_at_;  // each input vertex
+    CompressedRows<SegmentId> segments_at_;
+    std::vector<FacetId> ids_;  // ids_[i] = FacetId{i}: spans over single facets
+    std::vector<SegmentId> segment_ids_;
+    std::vector<FacetPair> pairs_;  // sorted, distinct
+    CompressedRows<SegmentId> pair_segments_;
 };
 
 }  // namespace wellmesh

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/compressed_rows.hpp"
 #include "core/vec3_math.hpp"
 #include "repair/piercing_point.hpp"
 #include "validation/box_tree.hpp"
@@ -15,23 +16,6 @@ namespace {
 using Vertex = std::uint32_t;
 /// A triangle, or after all triangles a wire.
 using Carrier = std::uint32_t;
-
-/// Lists in compressed rows.
-class Rows {
-public:
-    Rows() = default;
-    Rows(std::size_t n, const std::vector<std::array<std::uint32_t, 2>>& sorted_pairs) : first_(n + 1, 0) {
-        for (const auto& [at, what] : sorted_pairs) {
-            ++first_[at + 1];
-            items_.push_back(what);
-        }
-        for (std::size_t i = 0; i < n; ++i) first_[i + 1] += first_[i];
-    }
-    [[nodiscard]] std::span<const std::uint32_t> at(std::size_t i) const { return {items_.data() + first_[i], items_.data() + first_[i + 1]}; }
-
-private:
-    std::vector<std::uint32_t> first_, items_;
-};
 
 /// All of some boxes in a tree, and those of them that are fresh in another.
 class FreshTrees {
@@ -65,7 +49,7 @@ private:
 struct Edges {
     std::vector<EdgeKey> keys;  ///< ascending
     std::vector<char> fresh;
-    Rows carriers;              ///< of each
+    CompressedRows<Carrier> carriers;  ///< of each
     [[nodiscard]] std::size_t find(Vertex a, Vertex b) const {
         return static_cast<std::size_t>(std::lower_bound(keys.begin(), keys.end(), piece_edge(a, b)) - keys.begin());
     }
@@ -130,7 +114,7 @@ private:
         return false;
     }
     [[nodiscard]] bool is_needle(Vertex v, std::uint32_t e) const {
-        const auto at_edge = edges_.carriers.at(e);
+        const auto at_edge = edges_.carriers[e];
         return std::any_of(at_edge.begin(), at_edge.end(), [&](Carrier c) { return is_triangle(c) && std::find(corners(c).begin(), corners(c).end(), v) != corners(c).end(); });
     }
     void put_on_edge(Vertex v, std::uint32_t e) {
@@ -155,7 +139,7 @@ private:
     const double reach_;
     Edges edges_;
     std::vector<Vertex> vertices_;  // used ones
-    Rows carriers_of_vertex_;
+    CompressedRows<Carrier> carriers_of_vertex_;
     std::optional<FreshTrees> edge_trees_, triangle_trees_;
     std::vector<Common> common_;
     Contacts found_;
@@ -178,7 +162,7 @@ void ContactFinder::collect_edges() {
         const bool fresh = is_triangle(carrier) ? pieces_.triangles[carrier].fresh : pieces_.wires[carrier - pieces_.triangles.size()].fresh;
         if (fresh) edges_.fresh.back() = 1;
     }
-    edges_.carriers = Rows(edges_.keys.size(), pairs);
+    edges_.carriers = CompressedRows<Carrier>(edges_.keys.size(), pairs);
 }
 
 void ContactFinder::collect_vertices() {
@@ -193,7 +177,7 @@ void ContactFinder::collect_vertices() {
     for (const Vertex v : pieces_.lone) used[v] = 1;
     for (Vertex v = 0; v < used.size(); ++v)
         if (used[v]) vertices_.push_back(v);
-    carriers_of_vertex_ = Rows(pool_.size(), pairs);
+    carriers_of_vertex_ = CompressedRows<Carrier>(pool_.size(), pairs);
 }
 
 void ContactFinder::make_trees() {
@@ -223,7 +207,7 @@ void ContactFinder::vertex_to_edges(Vertex v) {
         if (gap > reach_ || (!pieces_.join_needles && gap > 0.6 * reach_ && is_needle(v, e))) return;
         put_on_edge(v, e);
         ++pieces_.actions.vertices_joined_to_edges;
-        note_common(carriers_of_vertex_.at(v), edges_.carriers.at(e), v);
+        note_common(carriers_of_vertex_[v], edges_.carriers[e], v);
     });
 }
 
@@ -238,7 +222,7 @@ void ContactFinder::vertex_to_triangles(Vertex v) {
         put_inside(v, t);
         ++pieces_.actions.vertices_joined_to_facets;
         const std::array<Carrier, 1> one{t};
-        note_common(carriers_of_vertex_.at(v), one, v);
+        note_common(carriers_of_vertex_[v], one, v);
     });
 }
 
@@ -276,7 +260,7 @@ void ContactFinder::edge_to_edges(std::uint32_t e) {
         const Vertex x = pool_.find_or_add(closest.on_first + 0.5 * (closest.on_second - closest.on_first));
         put_on_edge(x, e);
         put_on_edge(x, f);
-        note_common(edges_.carriers.at(e), edges_.carriers.at(f), x);
+        note_common(edges_.carriers[e], edges_.carriers[f], x);
     });
 }
 
@@ -303,7 +287,7 @@ void ContactFinder::edge_to_triangles(std::uint32_t e) {
         put_on_edge(x, e);
         put_inside(x, t);
         const std::array<Carrier, 1> one{t};
-        note_common(edges_.carriers.at(e), one, x);
+        note_common(edges_.carriers[e], one, x);
     });
 }
 

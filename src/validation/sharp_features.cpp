@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/compressed_rows.hpp"
 #include "core/vec3_math.hpp"
 #include "validation/working_complex.hpp"
 
@@ -19,23 +20,6 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 Vec3 unit(const Vec3& a) { return (1 / norm(a)) * a; }
-
-/// Lists of entities at each of n others, in compressed rows.
-class Incidence {
-public:
-    Incidence(std::size_t n, std::vector<std::array<std::uint32_t, 2>> pairs) : first_(n + 1, 0) {
-        std::sort(pairs.begin(), pairs.end());
-        for (const auto& [at, what] : pairs) {
-            ++first_[at + 1];
-            items_.push_back(what);
-        }
-        for (std::size_t i = 0; i < n; ++i) first_[i + 1] += first_[i];
-    }
-    [[nodiscard]] std::span<const std::uint32_t> at(std::size_t i) const { return {items_.data() + first_[i], items_.data() + first_[i + 1]}; }
-
-private:
-    std::vector<std::uint32_t> first_, items_;
-};
 
 /// A segment as seen from one of its ends.
 struct Ray {
@@ -209,18 +193,18 @@ void SharpFeatureFinder::at_vertices() {
     std::vector<std::array<std::uint32_t, 2>> pairs;
     for (std::uint32_t s = 0; s < plc_.segments.size(); ++s)
         for (const VertexId v : plc_.segments[s].ends) pairs.push_back({v.value(), s});
-    const Incidence segments(plc_.vertices.size(), std::move(pairs));
+    const CompressedRows<std::uint32_t> segments(plc_.vertices.size(), pairs);
     const std::vector<SoupTriangle> triangles = all_triangles(plc_);
     pairs = {};
     for (std::uint32_t t = 0; t < triangles.size(); ++t)
         for (std::uint32_t i = 0; i < 3; ++i) pairs.push_back({triangles[t].v[i].value(), 3 * t + i});
-    const Incidence corners(plc_.vertices.size(), std::move(pairs));
+    const CompressedRows<std::uint32_t> corners(plc_.vertices.size(), pairs);
     for (std::size_t i = 0; i < plc_.vertices.size(); ++i) {
         const VertexId v{i};
-        std::vector<Ray> rays = rays_at(v, segments.at(i));
+        std::vector<Ray> rays = rays_at(v, segments[i]);
         if (rays.empty()) continue;
         double smallest = smallest_between_rays(rays);
-        smallest = smallest_to_facets(v, rays, corners.at(i), triangles, smallest);
+        smallest = smallest_to_facets(v, rays, corners[i], triangles, smallest);
         if (smallest < kRight) found_.push_back({EntityKind::vertex, v.value(), smallest * kDegrees});
     }
 }
