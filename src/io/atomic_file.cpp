@@ -172,6 +172,14 @@ void OutputFile::real(double value) {
     used_ += static_cast<std::size_t>(std::to_chars(first, first + kLongestNumber, value).ptr - first);
 }
 
+void OutputFile::point(const Vec3& p) {
+    real(p.x);
+    character(' ');
+    real(p.y);
+    character(' ');
+    real(p.z);
+}
+
 void OutputFile::finish(bool sync) {
     flush();
     if (sync && !direct_ && ::fsync(descriptor_) != 0) fail("write", errno);

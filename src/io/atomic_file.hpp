@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "wellmesh/vec3.hpp"
+
 namespace wellmesh::io {
 
 /// A file under a temporary name in the directory of its target. Text is independent of the locale.
@@ -29,6 +31,7 @@ public:
     void integer(std::int64_t value);
     void real(double value);  ///< the shortest decimal that reads back as the same bits
     void bytes(const void* data, std::size_t size);
+    void point(const Vec3& p);  ///< three real(), a space between them
 
     /// Writes what is buffered and closes; the data must be safe (quotas, network) before anything is renamed.
     void finish(bool sync);

@@ -44,12 +44,7 @@ void write_medit(const TetMesh& mesh, References references, const std::vector<s
     out.integer(static_cast<std::int64_t>(mesh.vertices.size()));
     out.character('\n');
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        const Vec3& p = mesh.vertices[v];
-        out.real(p.x);
-        out.character(' ');
-        out.real(p.y);
-        out.character(' ');
-        out.real(p.z);
+        out.point(mesh.vertices[v]);
         out.character(' ');
         out.integer(vertex_reference(v));
         out.character('\n');

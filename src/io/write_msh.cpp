@@ -163,14 +163,6 @@ void write_integers(OutputFile& out, std::initializer_list<std::int64_t> values)
     out.character('\n');
 }
 
-void write_point(OutputFile& out, const Vec3& p) {
-    out.real(p.x);
-    out.character(' ');
-    out.real(p.y);
-    out.character(' ');
-    out.real(p.z);
-}
-
 /// The format has no way to write a quote within a name.
 std::string quotable(std::string name) {
     for (char& c : name)
@@ -200,10 +192,10 @@ void write_entities(OutputFile& out, Groups& groups) {
         for (const Entity& e : dimension.entities) {
             out.integer(e.tag);
             out.character(' ');
-            write_point(out, e.box.low);
+            out.point(e.box.low);
             if (dimension.kDimension > 0) {
                 out.character(' ');
-                write_point(out, e.box.high);
+                out.point(e.box.high);
             }
             out.text(fmt::format(" 1 {}", e.group));
             out.text(dimension.kDimension > 0 ? " 0\n" : "\n");  // the entities that bound it are not stated
@@ -251,7 +243,7 @@ void write_nodes(OutputFile& out, const TetMesh& mesh, Groups& groups) {
             write_integers(out, {dimension.kDimension, e.tag, 0, static_cast<std::int64_t>(e.vertices.size())});
             for (const std::uint32_t v : e.vertices) write_integers(out, {std::int64_t{v} + 1});
             for (const std::uint32_t v : e.vertices) {
-                write_point(out, mesh.vertices[v]);
+                out.point(mesh.vertices[v]);
                 out.character('\n');
             }
         }
@@ -320,7 +312,7 @@ void write_msh22(const TetMesh& mesh, OutputFile& out) {
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         out.integer(static_cast<std::int64_t>(v) + 1);
         out.character(' ');
-        write_point(out, mesh.vertices[v]);
+        out.point(mesh.vertices[v]);
         out.character('\n');
     }
     out.text("$EndNodes\n$Elements\n");

@@ -27,11 +27,7 @@ bool is_face(const PlcFacet& facet) { return facet.polygons.front().size() >= kL
 std::size_t face_count(const Plc& plc) { return static_cast<std::size_t>(std::count_if(plc.facets.begin(), plc.facets.end(), is_face)); }
 
 void write_coordinates(OutputFile& out, const Vec3& p) {
-    out.real(p.x);
-    out.character(' ');
-    out.real(p.y);
-    out.character(' ');
-    out.real(p.z);
+    out.point(p);
     out.character('\n');
 }
 
