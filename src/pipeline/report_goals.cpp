@@ -115,4 +115,15 @@ void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc
         result.termination = Termination::goals_unmet;
 }
 
+Termination termination(RunGuard::Verdict verdict) {
+    switch (verdict) {
+        case RunGuard::Verdict::cancelled: return Termination::cancelled;
+        case RunGuard::Verdict::out_of_time: return Termination::time_budget_reached;
+        case RunGuard::Verdict::out_of_vertices: return Termination::vertex_budget_reached;
+        case RunGuard::Verdict::out_of_memory: return Termination::memory_budget_reached;
+        case RunGuard::Verdict::go_on: break;
+    }
+    return Termination::goals_met;
+}
+
 }  // namespace wellmesh
