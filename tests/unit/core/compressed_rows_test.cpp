@@ -25,7 +25,7 @@ TEST(CompressedRows, AreListsInTheOrderOfTheEntries) {
 }
 
 TEST(CompressedRows, MayBeEmpty) {
-    const CompressedRows<int> rows(2, std::vector<std::array<std::uint32_t, 2>>{});
+    const CompressedRows<std::uint32_t> rows(2, std::vector<std::array<std::uint32_t, 2>>{});
     EXPECT_TRUE(rows[0].empty());
     EXPECT_TRUE(rows[1].empty());
 }
