@@ -9,7 +9,6 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -17,6 +16,7 @@
 
 #include "io/mixed_mesh.hpp"
 #include "io/msh_cursor.hpp"
+#include "io/msh_nodes.hpp"
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
 
@@ -100,8 +100,7 @@ private:
             read_entities();
         } else if (name == "Nodes") {
             if (std::exchange(nodes_given_, true)) in_.fail("the section $Nodes is given twice");
-            four_ ? read_nodes_4() : read_nodes_2();
-            index_nodes();
+            four_ ? nodes_.read_4() : nodes_.read_2();
         } else if (name == "Elements") {
             if (!nodes_given_) in_.fail("$Elements stand before $Nodes");
             if (std::exchange(elements_given_, true)) in_.fail("the section $Elements is given twice");
@@ -181,88 +180,6 @@ private:
         }
     }
 
-    void add_node(std::int64_t tag, const Vec3& p) {
-        if (tag < 1) in_.fail(fmt::format("node {}: numbers are positive", tag));
-        if (out_.points.size() >= kMostVertices) in_.fail("more nodes than 32-bit numbers hold");
-        tags_.push_back(tag);
-        out_.points.push_back(p);
-    }
-
-    Vec3 read_coordinates() {
-        Vec3 p;
-        p.x = in_.coordinate(precision_);
-        p.y = in_.coordinate(precision_);
-        p.z = in_.coordinate(precision_);
-        return p;
-    }
-
-    void read_nodes_2() {
-        const std::size_t count = in_.count(in_.text().integer("the number of nodes"), "the number of nodes", 8, 4 + 3 * 8);
-        in_.begin_data();
-        out_.points.reserve(count);
-        tags_.reserve(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::int64_t tag = in_.integer("the number of a node");
-            add_node(tag, read_coordinates());
-        }
-    }
-
-    void read_nodes_4() {
-        in_.begin_data();
-        const std::int64_t block_count = in_.size("the number of blocks"), nodes = in_.size("the number of nodes");
-        (void)in_.size("the least number of a node");
-        (void)in_.size("the largest number of a node");
-        const std::size_t blocks = in_.count(block_count, "the number of blocks", 8, 3 * 4 + 8);
-        const std::size_t total = in_.count(nodes, "the number of nodes", 8, 8 + 3 * 8);
-        out_.points.reserve(total);
-        tags_.reserve(total);
-        std::vector<std::int64_t> tags;
-        for (std::size_t b = 0; b < blocks; ++b) {
-            const std::int64_t dimension = in_.integer("the dimension of a block");
-            (void)in_.integer("the entity of a block");
-            const bool parametric = in_.integer("whether a block has parameters") != 0;
-            if (dimension < 0 || dimension > 3) in_.fail(fmt::format("the dimension of a block is 0 to 3, not {}", dimension));
-            const std::size_t count = in_.count(in_.size("the number of nodes of a block"), "the number of nodes of a block", 8, 8 + 3 * 8);
-            tags.clear();
-            for (std::size_t i = 0; i < count; ++i) tags.push_back(in_.size("the number of a node"));
-            for (const std::int64_t tag : tags) {
-                add_node(tag, read_coordinates());
-                if (parametric)
-                    for (std::int64_t k = 0; k < dimension; ++k) (void)in_.real("a parameter");
-            }
-        }
-        if (out_.points.size() != total) in_.fail(fmt::format("$Nodes states {} nodes, its blocks have {}", total, out_.points.size()));
-    }
-
-    void index_nodes() {
-        for (std::size_t i = 0; i < tags_.size() && sequential_; ++i) sequential_ = tags_[i] == static_cast<std::int64_t>(i) + 1;
-        if (sequential_) return;
-        // Without the few gaps of numbers, in the order of the numbers: so a mesh that was written block by block comes back as it was.
-        std::vector<std::size_t> order(tags_.size());
-        for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tags_[a] < tags_[b]; });
-        std::vector<Vec3> points;
-        points.reserve(order.size());
-        index_of_.reserve(order.size());
-        for (const std::size_t i : order) {
-            if (!index_of_.emplace(tags_[i], static_cast<std::uint32_t>(points.size())).second)
-                in_.fail(fmt::format("node {} is given twice", tags_[i]));
-            points.push_back(out_.points[i]);
-        }
-        out_.points = std::move(points);
-    }
-
-    std::uint32_t index_of(std::int64_t tag) const {
-        if (sequential_) {
-            if (tag < 1 || static_cast<std::uint64_t>(tag) > out_.points.size())
-                in_.fail(fmt::format("node {} does not exist; the file has nodes 1 to {}", tag, out_.points.size()));
-            return static_cast<std::uint32_t>(tag - 1);
-        }
-        const auto at = index_of_.find(tag);
-        if (at == index_of_.end()) in_.fail(fmt::format("node {} does not exist", tag));
-        return at->second;
-    }
-
     /// @return null: to be passed over
     const ElementType* element_type(std::int64_t type, std::int64_t element) const {
         for (const ElementType& known : kElementTypes) {
@@ -283,7 +200,7 @@ private:
         std::array<std::uint32_t, 4> c{};
         for (std::size_t k = 0; k < type.nodes; ++k) {
             const std::int64_t tag = kWide ? in_.size("the number of a node") : in_.integer("the number of a node");
-            if (k < c.size()) c[k] = index_of(tag);
+            if (k < c.size()) c[k] = nodes_.index_of(tag);
         }
         if (!kWide) {  // version 2 lists what is in several groups once for each, one after the other; the first group counts
             const LastElement element{type.type, entity, c};
@@ -385,7 +302,7 @@ private:
         const bool keep = components == 1 && entries >= out_.points.size();
         std::vector<double> values(keep ? out_.points.size() : 0, std::numeric_limits<double>::quiet_NaN());
         for (std::size_t i = 0; i < entries; ++i) {
-            const std::uint32_t at = index_of(in_.integer("the number of a node"));
+            const std::uint32_t at = nodes_.index_of(in_.integer("the number of a node"));
             for (std::size_t k = 0; k < components; ++k) {
                 const double value = in_.real("a value");
                 if (keep) values[at] = value;
@@ -403,13 +320,12 @@ private:
 
     MshCursor in_;
     TextPrecision precision_;
-    bool as_surface_, four_ = false, nodes_given_ = false, elements_given_ = false, sequential_ = true;
+    bool as_surface_, four_ = false, nodes_given_ = false, elements_given_ = false;
     LastElement last_;
     std::int32_t last_marker_ = 0;
-    std::vector<std::int64_t> tags_;
-    std::unordered_map<std::int64_t, std::uint32_t> index_of_;      // only looked up; empty if sequential
     std::array<std::map<std::int64_t, std::int32_t>, 4> group_of_;  // first physical group of each entity, by dimension
     MixedMesh out_;
+    MshNodes nodes_{in_, out_.points, precision_};
 };
 
 }  // namespace
