@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <map>
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
 #include "refinement/refine.hpp"
 #include "wellmesh/exemption.hpp"
 #include "wellmesh/options.hpp"
+#include "wellmesh/tet_mesh.hpp"
 
 namespace wellmesh {
 
@@ -15,5 +19,16 @@ namespace wellmesh {
 /// @param first_number  of vertices in the source's own counting.
 [[nodiscard]] std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
                                                      std::uint32_t first_number);
+
+/// The exemptions of a mesh whose tetrahedra are about to change. Those that come out of it as they were stay exempt, under their new number; new ones
+/// never are.
+class ExemptionKeeper {
+public:
+    ExemptionKeeper(const TetMesh& mesh, std::vector<Exemption> exemptions);
+    [[nodiscard]] std::vector<Exemption> of(const TetMesh& mesh) const;
+
+private:
+    std::map<std::array<std::uint32_t, 4>, Exemption> by_corners_;  // ascending
+};
 
 }  // namespace wellmesh

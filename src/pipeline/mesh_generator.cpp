@@ -159,8 +159,10 @@ private:
         size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());
         if (verdict == RunGuard::Verdict::go_on && exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {
+                const ExemptionKeeper exempt(result_.mesh, std::move(result_.exemptions));
                 const ExudationReport report = exude(result_.mesh, options_.quality.min_dihedral_angle_deg, exudation_bounds(options_, valid, refiner.sizes()), guard_);
                 verdict = report.verdict;
+                result_.exemptions = exempt.of(result_.mesh);
                 result_.statistics.weighted_vertices = report.weighted_vertices;
                 tets_ = result_.mesh.tets.size();
             });
