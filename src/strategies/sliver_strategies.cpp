@@ -57,9 +57,11 @@ SliverOutcome refine_slivers(ConformingMesh& mesh, const BoundaryRefiner& bounda
     const std::uint64_t almost_good = mesh.vertex_count();
     refiner.set_sliver_rule(rule);
     refiner.set_sliver_budget(growth_budget(mesh));
-    // The paper assumes that no input angle is acute. Where one is, splits about it may chase each other until there is no mesh to hand out.
+    // The paper assumes that no input angle is acute. Where one is, the cascade that splits slivers is rarely endless, but it can be: a fan of ten blades
+    // at 0.4 degrees is such an input, of 40 models of CAD and geology none. Refiner::refine() would end it with a mesh, too, but half-way, full of vertices
+    // that helped nothing; so what there was before is handed out. The exception comes only where there was no memory for Refiner's own copy.
     std::optional<ConformingMesh> before;
-    if (!mesh.plc().acute_features.empty() && !boundary.recorder) {
+    if (!mesh.plc().acute_features.empty() && !boundary.recorder && guard.can_double()) {
         before = mesh;
         guard.set_ceiling(2 * growth_budget(mesh));
     }
