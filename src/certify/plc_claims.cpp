@@ -26,7 +26,7 @@ constexpr std::array<std::array<const char*, 2>, 8> kStatements{{
     {"plc_area", "The constraint triangles have the area of the PLC's facets."},
     {"plc_vertices", "Every vertex of a facet of the PLC is a vertex of the mesh."},
     {"plc_segments", "Every segment of the PLC is a chain of mesh edges."},
-    {"plc_isolated_vertices", "Every vertex of the PLC that is on no facet is a vertex of the mesh."},
+    {"plc_isolated_vertices", "Every vertex of the PLC that is on no facet is a vertex of the mesh, but for leftovers of surface files."},
     {"plc_filled", "No facet of the PLC that bounds a cell lies outside the mesh."},
     {"holes_empty", "No hole seed lies inside the mesh."},
     {"region_volumes", "Every region has the volume of its cells of the PLC."},

@@ -104,8 +104,15 @@ void collect_vertices(const Plc& plc, const Places& places, PlcSurface& surface)
     for (const PlcFacet& f : plc.facets)
         for (const auto& polygon : f.polygons)
             for (const std::uint32_t v : polygon) used[places.of(v)] = 1;
-    for (std::uint32_t v = 0; v < used.size(); ++v)
-        if (places.of(v) == v) (used[v] ? surface.facet_vertices : surface.other_vertices).push_back(v);
+    // What nothing uses is a point of a complex, but a leftover in a file that states the surface of a solid.
+    std::vector<std::uint8_t> meant(plc.vertices.size(), plc.fill == FillRule::bounded_cells ? 1 : 0);
+    for (const PlcSegment& s : plc.segments)
+        for (const std::uint32_t v : s.vertices) meant[places.of(v)] = 1;
+    for (std::uint32_t v = 0; v < used.size(); ++v) {
+        if (places.of(v) != v) continue;
+        if (used[v]) surface.facet_vertices.push_back(v);
+        else if (meant[v]) surface.other_vertices.push_back(v);
+    }
 }
 
 /// Facets of which an earlier one has the same polygons: shared walls of solids that touch are listed twice, and are one facet.

@@ -22,7 +22,7 @@ struct PlcSurface {
     TriangleTree triangles;                  ///< cover the facets, repeated ones once
     std::vector<bool> dangling;              ///< of each triangle, whether it bounds no cell whatever is filled: part of a fin, flap or free sheet
     std::vector<std::uint32_t> facets;       ///< of each triangle, its facet
-    std::vector<std::uint32_t> facet_vertices, other_vertices;  ///< used by facets; by none. Of vertices at one place, the first
+    std::vector<std::uint32_t> facet_vertices, other_vertices;  ///< used by facets; by none, leftovers of surface files apart. Of vertices at one place, the first
     /// Edges that a conforming mesh must have: entries of Plc::segments, and polygon edges of facets with an area, except those at which exactly two triangles, of
     /// different facets, are flat together: a mesher may have merged the two.
     std::vector<PlcEdge> edges;

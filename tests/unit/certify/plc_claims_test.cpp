@@ -153,6 +153,11 @@ TEST(PlcClaims, IsolatedVertices) {
     EXPECT_EQ(violations(box, "plc_isolated_vertices"), 1U);
     add_vertex(box.plc, {-1, 1.05, 1.01});  // outside
     EXPECT_EQ(violations(box, "plc_isolated_vertices"), 1U);
+    box.plc.fill = FillRule::nonzero_winding;  // now it is a leftover of a surface file
+    EXPECT_EQ(violations(box, "plc_isolated_vertices"), 0U);
+    const std::uint32_t n = static_cast<std::uint32_t>(box.plc.vertices.size());
+    box.plc.segments.push_back({{n - 2, n - 1}, 0});
+    EXPECT_EQ(violations(box, "plc_isolated_vertices"), 1U);
 }
 
 TEST(PlcClaims, ToleranceIsRelativeToTheDiagonal) {
