@@ -16,7 +16,6 @@ namespace wellmesh::testing {
 namespace {
 
 using nlohmann::json;
-using Names = std::vector<std::string>;
 
 constexpr const char* kCubeOff =
     "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
@@ -24,8 +23,6 @@ constexpr const char* kCubeOff =
 constexpr const char* kOpenBoxOff =
     "OFF\n8 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
     "4 3 2 1 0\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(mesh_command, example_meets_its_goals_and_the_certificate_holds_for_the_file) {
     const ScratchFolder scratch;

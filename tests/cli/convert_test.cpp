@@ -12,14 +12,11 @@ namespace wellmesh::testing {
 namespace {
 
 using nlohmann::json;
-using Names = std::vector<std::string>;
 
 // Two cubes one on the other with a common side, as a surface without seeds.
 constexpr const char* kTower =
     "OFF\n12 11 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n0 0 2\n1 0 2\n1 1 2\n0 1 2\n"
     "4 3 2 1 0\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n4 4 5 6 7\n4 4 5 9 8\n4 5 6 10 9\n4 6 7 11 10\n4 7 4 8 11\n4 8 9 10 11\n";
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 json report_of(const std::string& path) { return json::parse(read_text(path)); }
 

@@ -13,13 +13,10 @@ namespace wellmesh::testing {
 namespace {
 
 using nlohmann::json;
-using Names = std::vector<std::string>;
 
 constexpr const char* kCubePoly =
     "8 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n"
     "6 0\n1\n4 4 3 2 1\n1\n4 5 6 7 8\n1\n4 1 2 6 5\n1\n4 2 3 7 6\n1\n4 3 4 8 7\n1\n4 4 1 5 8\n0\n0\n";
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 json report_of(const std::string& path) { return json::parse(read_text(path)); }
 

@@ -13,20 +13,30 @@ namespace wellmesh::testing {
 namespace {
 
 using nlohmann::json;
-using Names = std::vector<std::string>;
 
 constexpr const char* kCubeOff =
     "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(limits, fewer_vertices_than_the_input_has_are_an_error) {
     const ScratchFolder scratch;
     const std::string cube = scratch.write("cube.off", kCubeOff);
     const Outcome run = run_wellmesh({"mesh", cube, "--max-vertices", "7", "-o", scratch.file("out.mesh"), "--json", scratch.file("r.json")});
     EXPECT_EQ(run.status, 4) << run.err;
+    EXPECT_TRUE(contains(run.err, "at most 7 vertices were allowed, and 8 are there already")) << run.err;
     EXPECT_EQ(scratch.listing(), (Names{"cube.off", "r.json"}));
     EXPECT_EQ(json::parse(read_text(scratch.file("r.json"))).at("error").at("code"), "budget_exhausted");
+}
+
+TEST(limits, a_spent_number_of_vertices_is_said_with_what_is_missed) {
+    const ScratchFolder scratch;
+    const std::string cube = scratch.write("cube.off", kCubeOff);
+    const Outcome run = run_wellmesh({"mesh", cube, "--size", "0.05", "--max-vertices", "300", "-o", scratch.file("out.mesh")});
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_TRUE(contains(run.out, "vertex_budget_reached") || contains(run.err, "vertex_budget_reached")) << run.out << run.err;
+    EXPECT_TRUE(contains(run.out, " NO ")) << run.out;
+    const Outcome few = run_wellmesh({"mesh", cube, "--max-vertices", "3"});
+    EXPECT_EQ(few.status, 3) << few.err;
+    EXPECT_TRUE(contains(few.err, "at least 4")) << few.err;
 }
 
 TEST(limits, sizes_of_memory_as_people_type_them) {

@@ -49,6 +49,10 @@ private:
     std::filesystem::path path_;
 };
 
+using Names = std::vector<std::string>;
+
+[[nodiscard]] inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
 std::string read_text(const std::filesystem::path& path);
 
 }  // namespace wellmesh::testing

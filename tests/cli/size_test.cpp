@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "cli/run_program.hpp"
 #include "wellmesh/io.hpp"
@@ -12,8 +15,6 @@ namespace wellmesh::testing {
 namespace {
 
 using nlohmann::json;
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// Two unit cubes, regions 1 and 2; the wall between them has marker 3, the vertex at the origin 4.
 std::string two_boxes() {
@@ -91,6 +92,67 @@ TEST(sizes, by_features_and_curvature_are_options_and_off_is_a_gradation) {
     EXPECT_EQ(report.at("options").at("min_edge_length"), 0.05);
     EXPECT_EQ(report.at("options").at("gradation"), 0);
     EXPECT_NEAR(achieved(report, "edge length / size (median)"), 1, 0.2);
+}
+
+/// A unit cube whose lid, at z = 1, an edge of it and the corner at the origin have names.
+constexpr const char* kNamedCubeMsh =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n0 11 \"corner\"\n1 12 \"rim of the lid\"\n2 13 \"lid\"\n2 14 \"wall\"\n$EndPhysicalNames\n"
+    "$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n"
+    "$Elements\n8\n1 15 2 11 1 1\n2 1 2 12 1 5 6\n3 3 2 14 1 4 3 2 1\n4 3 2 13 2 5 6 7 8\n5 3 2 14 3 1 2 6 5\n6 3 2 14 4 2 3 7 6\n7 3 2 14 5 3 4 8 7\n8 3 2 14 6 4 1 5 8\n"
+    "$EndElements\n";
+
+/// Mean length of the edges of tetrahedra whose ends both satisfy a condition.
+template <class Condition>
+double mean_edge(const TetMesh& mesh, Condition&& on) {
+    double sum = 0;
+    std::size_t n = 0;
+    for (const auto& t : mesh.tets)
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = i + 1; j < 4; ++j) {
+                const Vec3 &p = mesh.vertices[t[i]], &q = mesh.vertices[t[j]];
+                if (!on(p) || !on(q)) continue;
+                sum += std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
+                ++n;
+            }
+    EXPECT_GT(n, 0U);
+    return sum / static_cast<double>(n);
+}
+
+TEST(sizes, are_asked_by_the_names_of_the_file_and_of_the_command_line) {
+    const ScratchFolder scratch;
+    const RunOptions here = {.folder = scratch.path()};
+    (void)scratch.write("cube.msh", kNamedCubeMsh);
+    const auto mesh_with = [&](std::vector<std::string> sizes) {
+        std::vector<std::string> all{"mesh", "cube.msh", "--region-at", "0.5,0.5,0.5=steel", "--size", "0.5", "--gradation", "0.5", "-o", "cube.mesh", "--json", "report.json"};
+        all.insert(all.end(), sizes.begin(), sizes.end());
+        return run_wellmesh(all, here);
+    };
+    const auto on_lid = [](const Vec3& p) { return p.z == 1; };
+    const auto on_rim = [](const Vec3& p) { return p.z == 1 && p.y == 0; };
+    const auto near_corner = [](const Vec3& p) { return std::hypot(p.x, p.y, p.z) < 0.05; };
+    const auto anywhere = [](const Vec3&) { return true; };
+    const std::vector<std::tuple<std::vector<std::string>, std::string, double, std::function<bool(const Vec3&)>>> cases{
+        {{"--size-facet", "lid=0.1"}, "facet", 0.1, on_lid},
+        {{"--size-segment", "rim of the lid=0.05"}, "segment", 0.05, on_rim},
+        {{"--size-vertex", "corner=0.02"}, "vertex", 0.02, near_corner},
+        {{"--size-region", "steel=0.2"}, "region", 0.2, anywhere}};
+    for (const auto& [arguments, entity, length, place] : cases) {
+        const Outcome run = mesh_with(arguments);
+        ASSERT_EQ(run.status, 0) << entity << run.out << run.err;
+        const json sizes = json::parse(read_text(scratch.file("report.json"))).at("options").at("entity_sizes");
+        ASSERT_EQ(sizes.size(), 1U) << sizes;
+        EXPECT_EQ(sizes.at(0).at("entity"), entity);
+        EXPECT_EQ(sizes.at(0).at("edge_length"), length);
+        const double mean = mean_edge(read_mesh(scratch.file("cube.mesh")), place);
+        EXPECT_GT(mean, 0.5 * length) << entity;
+        EXPECT_LT(mean, 1.3 * length) << entity;
+    }
+    for (const char* flag : {"--size-facet", "--size-segment", "--size-vertex", "--size-region"}) {
+        const Outcome run = mesh_with({flag, "no such thing=0.1"});
+        EXPECT_EQ(run.status, 3) << flag;
+        EXPECT_TRUE(contains(run.err, "no such thing")) << run.err;
+        EXPECT_TRUE(contains(run.err, std::string(flag) == "--size-facet" ? "lid" : std::string(flag) == "--size-segment" ? "rim of the lid" : std::string(flag) == "--size-vertex" ? "corner" : "steel")) << run.err;
+    }
 }
 
 TEST(sizes, out_of_range_are_usage_errors_that_say_the_range) {
