@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
+#include "support/acute_plcs.hpp"
 #include "support/expect_result.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
@@ -175,6 +178,25 @@ TEST(SliverStrategies, RefineEndsWhereAnAngleIsAcute) {
     const MeshResult refined = generate(wedge, options);
     expect_honest(refined);
     EXPECT_TRUE(refined.termination == Termination::goals_met || refined.termination == Termination::goals_unmet);
+}
+
+TEST(SliverStrategies, ExudationNumbersExemptTetrahedraAnew) {
+    const Plc plc = testing::wedge(5);
+    const MeshOptions none = with(SliverStrategy::none, 20, 0.3), exude = with(SliverStrategy::exude, 20, 0.3);
+    const MeshResult before = generate(plc, none), after = generate(plc, exude);
+    ASSERT_FALSE(after.exemptions.empty());
+    ASSERT_NE(before.mesh.tets, after.mesh.tets);
+    const auto corners = [](const MeshResult& result, const Exemption& e) {
+        auto c = result.mesh.tets.at(e.tet);
+        std::sort(c.begin(), c.end());
+        return c;
+    };
+    // Exudation moves no vertex, so what is exempt afterwards was exempt before.
+    std::set<std::array<std::uint32_t, 4>> exempt;
+    for (const Exemption& e : before.exemptions) exempt.insert(corners(before, e));
+    for (const Exemption& e : after.exemptions) EXPECT_TRUE(exempt.contains(corners(after, e))) << e.tet;
+    EXPECT_TRUE(std::is_sorted(after.exemptions.begin(), after.exemptions.end(), [](const Exemption& a, const Exemption& b) { return a.tet < b.tet; }));
+    EXPECT_EQ(after.certificate.find("exemptions")->state, Claim::State::proven);
 }
 
 TEST(SliverStrategies, LimitsOfTheUserHold) {
