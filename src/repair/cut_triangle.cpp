@@ -135,21 +135,28 @@ public:
     LineArrangement(CutTask task, VertexPool& pool, TriplePoints& triples) : task_(std::move(task)), pool_(pool), triples_(triples) {}
 
     CutResult run() {
-        constexpr std::size_t kMostRounds = 1000;  // each adds a vertex where lines cross; what is left over then is found again later
+        constexpr std::size_t kMostRounds = 64;  // each adds vertices where lines cross, few but the first; what is left over then is found again later
         const PlaneProjection projection(projection_axis(task_.normal));
         for (std::size_t round = 0;; ++round) {
             std::vector<Edge> edges = number_vertices();
             FacetTriangulation flat = triangulate_facet(points_, projection, edges, task_.holes, 0.5 * pool_.reach());
             for (const auto& s : flat.splits) split({ids_[s.edge[0]], ids_[s.edge[1]]}, ids_[s.inside]);
-            if (round < kMostRounds && !flat.crossings.empty()) {
-                for (const auto& [e, f] : flat.crossings) cross_at({ids_[e[0]], ids_[e[1]]}, {ids_[f[0]], ids_[f[1]]});
+            if (!flat.coincident.empty()) {  // an edge to one that is left out would be missing
+                // one pair at a time: in a list, what was left out for one might be what another is left out for
+                const auto& pair = flat.coincident.front();
+                stack(std::min(ids_[pair[0]], ids_[pair[1]]), std::max(ids_[pair[0]], ids_[pair[1]]));
                 continue;
+            }
+            if (round < kMostRounds && !flat.crossings.empty()) {
+                const std::size_t before = result_.splits.size();
+                for (const auto& [e, f] : flat.crossings) cross_at({ids_[e[0]], ids_[e[1]]}, {ids_[f[0]], ids_[f[1]]});
+                if (result_.splits.size() != before) continue;  // otherwise they cross at their ends, but for rounding
             }
             Flipper(flat.triangles, flat.constraints, points_, projection, pool_.reach()).run();
             for (const auto& t : flat.triangles) result_.triangles.push_back({ids_[t[0]], ids_[t[1]], ids_[t[2]]});
+            if (flat.triangles.empty()) split_along(projection);
             if (task_.only_border_encloses) keep_what_border_encloses();
             for (const Edge& e : flat.constraints) result_.lines.push_back({ids_[e[0]], ids_[e[1]]});
-            for (const auto& pair : flat.coincident) result_.stacked.push_back({ids_[pair[0]], ids_[pair[1]]});
             return std::move(result_);
         }
     }
@@ -170,49 +177,52 @@ private:
         return edges;
     }
 
-    /// The others do lie between lines, but outside: a way to the outside crosses the border an even number of times.
+    /// The others do lie between lines, but outside. Counts with signs: after joining, part of a border may run the other way round, and there the
+    /// triangles must count the other way for the surface to stay closed.
     void keep_what_border_encloses() {
-        std::unordered_map<EdgeKey, bool> border;
-        for (const Edge& e : task_.border) {
-            bool& odd = border[piece_edge(e[0], e[1])];
-            odd = !odd;
-        }
-        const auto crosses_border = [&](EdgeKey key) {
-            const auto found = border.find(key);
-            return found != border.end() && found->second;
+        std::unordered_map<EdgeKey, int> upwards;  // times that the border takes an edge from its lower to its higher vertex, less the other way
+        for (const Edge& e : task_.border) upwards[piece_edge(e[0], e[1])] += e[0] < e[1] ? 1 : -1;
+        const auto end_of = [&](std::uint32_t t, std::size_t i) { return result_.triangles[t][i % 3]; };
+        const auto key_of = [&](std::uint32_t t, std::size_t i) { return piece_edge(end_of(t, i), end_of(t, i + 1)); };
+        const auto entering = [&](std::uint32_t t, std::size_t i) {
+            const auto found = upwards.find(key_of(t, i));
+            return found == upwards.end() ? 0 : end_of(t, i) < end_of(t, i + 1) ? found->second : -found->second;
         };
-        std::unordered_map<EdgeKey, std::array<std::uint32_t, 2>> sides;
-        const auto key_of = [&](std::uint32_t t, std::size_t i) { return piece_edge(result_.triangles[t][i], result_.triangles[t][(i + 1) % 3]); };
         constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
+        std::unordered_map<EdgeKey, std::array<std::uint32_t, 2>> sides;
         for (std::uint32_t t = 0; t < result_.triangles.size(); ++t)
             for (std::size_t i = 0; i < 3; ++i) {
                 auto& pair = sides.try_emplace(key_of(t, i), std::array{kNone, kNone}).first->second;
                 pair[pair[0] == kNone ? 0 : 1] = t;
             }
-        constexpr char kUnknown = 2;
-        std::vector<char> inside(result_.triangles.size(), kUnknown);
+        std::vector<char> known(result_.triangles.size(), 0);
+        std::vector<int> winding(result_.triangles.size(), 0);
         std::vector<std::uint32_t> todo;
-        const auto reach = [&](std::uint32_t t, bool is_inside) {
-            if (inside[t] != kUnknown) return;
-            inside[t] = is_inside ? 1 : 0;
+        const auto reach = [&](std::uint32_t t, int number) {
+            if (known[t]) return;
+            known[t] = 1;
+            winding[t] = number;
             todo.push_back(t);
         };
-        for (std::uint32_t start = 0; start < inside.size(); ++start) {
+        for (std::uint32_t start = 0; start < known.size(); ++start) {
             for (std::size_t i = 0; i < 3; ++i)
-                if (sides.at(key_of(start, i))[1] == kNone) reach(start, crosses_border(key_of(start, i)));
+                if (sides.at(key_of(start, i))[1] == kNone) reach(start, entering(start, i));
             while (!todo.empty()) {
                 const std::uint32_t t = todo.back();
                 todo.pop_back();
                 for (std::size_t i = 0; i < 3; ++i) {
                     const auto& pair = sides.at(key_of(t, i));
                     const std::uint32_t other = pair[0] == t ? pair[1] : pair[0];
-                    if (other != kNone) reach(other, (inside[t] != 0) != crosses_border(key_of(t, i)));
+                    if (other != kNone) reach(other, winding[t] - entering(t, i));
                 }
             }
         }
         std::size_t kept = 0;
-        for (std::uint32_t t = 0; t < inside.size(); ++t)
-            if (inside[t] == 1) result_.triangles[kept++] = result_.triangles[t];
+        for (std::uint32_t t = 0; t < known.size(); ++t)
+            if (winding[t] != 0) {
+                result_.windings.push_back(winding[t]);
+                result_.triangles[kept++] = result_.triangles[t];
+            }
         result_.triangles.resize(kept);
     }
 
@@ -235,6 +245,30 @@ private:
                 task_.lines[i].ends[1] = x;
             }
         if (any) result_.splits.push_back({e, x});
+    }
+
+    void stack(std::uint32_t kept, std::uint32_t gone) {
+        result_.stacked.push_back({kept, gone});
+        const auto rename = [&](Edge& e) { std::replace(e.begin(), e.end(), gone, kept); };
+        for (Edge& e : task_.border) rename(e);
+        for (CutLine& line : task_.lines) rename(line.ends);
+        std::replace(task_.points.begin(), task_.points.end(), gone, kept);
+        std::erase_if(task_.border, [](const Edge& e) { return e[0] == e[1]; });
+        std::erase_if(task_.lines, [](const CutLine& line) { return line.ends[0] == line.ends[1]; });
+    }
+
+    /// All vertices are on one line: edges are led through those between their ends, so that neighbours are, too, and the border cancels.
+    void split_along(const PlaneProjection& projection) {
+        std::vector<std::uint32_t> order = ids_;
+        std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
+            const auto p = projection(pool_[v]), q = projection(pool_[w]);
+            return p != q ? p < q : v < w;
+        });
+        for (const Edge& e : std::vector<Edge>(task_.border)) {
+            auto from = std::find(order.begin(), order.end(), e[0]), to = std::find(order.begin(), order.end(), e[1]);
+            if (to < from) std::swap(from, to);
+            for (auto at = from; at != to && at + 1 != to; ++at) split({*at, *to}, *(at + 1));
+        }
     }
 
     void cross_at(const Edge& e, const Edge& f) {
@@ -290,8 +324,13 @@ std::vector<Edge> border_of(std::vector<std::uint32_t> loop) {
     for (std::size_t i = 0; i < loop.size(); ++i) edges.push_back({loop[i], loop[(i + 1) % loop.size()]});
     // an edge passed there and back elsewhere on the loop has nothing between its two sides
     std::vector<Edge> kept;
-    for (const Edge& e : edges)
-        if (std::find(edges.begin(), edges.end(), Edge{e[1], e[0]}) == edges.end()) kept.push_back(e);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const auto back = std::find(kept.begin(), kept.end(), Edge{edges[i][1], edges[i][0]});
+        if (back != kept.end())
+            kept.erase(back);
+        else
+            kept.push_back(edges[i]);
+    }
     return kept;
 }
 

@@ -24,8 +24,8 @@ using TriplePoints = std::map<std::array<std::uint32_t, 3>, std::uint32_t>;
 /// What to triangulate, in numbers of the pool.
 struct CutTask {
     std::vector<std::array<std::uint32_t, 2>> border;
-    /// Whether the result is what has an odd number of crossings with the border between it and the outside, which makes triangles that were cut fit
-    /// together again; otherwise it is all that can't be reached from outside, or from a hole, without crossing a border or a line.
+    /// Whether the result is what the border runs about, so and so often, which makes triangles that were cut fit together again; otherwise it is all
+    /// that can't be reached from outside, or from a hole, without crossing a border or a line.
     bool only_border_encloses = false;
     std::vector<CutLine> lines;
     std::uint32_t self = 0;  ///< number of the triangle
@@ -36,13 +36,14 @@ struct CutTask {
 
 struct CutResult {
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<int> windings;                          ///< of the border about each triangle, not 0; empty unless only_border_encloses
     std::vector<std::array<std::uint32_t, 2>> lines;    ///< border and lines, in pieces
     struct Split {
         std::array<std::uint32_t, 2> edge{};
         std::uint32_t inside = 0;
     };
     std::vector<Split> splits;                          ///< of border and lines, in the order made
-    std::vector<std::array<std::uint32_t, 2>> stacked;  ///< pairs of vertices on top of each other, of which only the first was used
+    std::vector<std::array<std::uint32_t, 2>> stacked;  ///< pairs of vertices on top of each other, of which only the first is used
 };
 
 /// Lines that cross get a vertex of the pool where they do; lines that pass a vertex within half the pool's reach lead through it. Triangulations

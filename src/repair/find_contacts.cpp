@@ -2,6 +2,8 @@
 #include "repair/find_contacts.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "core/compressed_rows.hpp"
 #include "core/vec3_math.hpp"
@@ -73,7 +75,9 @@ public:
         for (std::uint32_t e = 0; e < edges_.keys.size(); ++e) follow_split(e);
         for (std::uint32_t e = 0; e < edges_.keys.size(); ++e) edge_to_edges(e);
         for (std::uint32_t e = 0; e < edges_.keys.size(); ++e) edge_to_triangles(e);
+        hand_down_to_splits();
         sort_lists();
+        gather_from_splits();
         draw_lines();
         return std::move(found_);
     }
@@ -96,6 +100,8 @@ private:
     void vertex_to_triangles(Vertex v);
     void edge_to_edges(std::uint32_t e);
     void edge_to_triangles(std::uint32_t e);
+    void hand_down_to_splits();
+    void gather_from_splits();
     void sort_lists();
     void draw_lines();
     void draw_lines(Carrier s, Carrier t, std::vector<Vertex> common);
@@ -142,6 +148,7 @@ private:
     CompressedRows<Carrier> carriers_of_vertex_;
     std::optional<FreshTrees> edge_trees_, triangle_trees_;
     std::vector<Common> common_;
+    std::vector<std::pair<EdgeKey, std::vector<Vertex>>> split_chains_;  // edges that were split elsewhere, with all vertices from end to end
     Contacts found_;
 };
 
@@ -228,14 +235,42 @@ void ContactFinder::vertex_to_triangles(Vertex v) {
 
 /// Splits of splits, too, as deep as they go: each was made later than the one that it splits.
 void ContactFinder::follow_split(std::uint32_t e) {
-    if (splits_.empty()) return;
-    std::vector<EdgeKey> todo{edges_.keys[e]};
-    constexpr std::size_t kMost = 10000;
-    for (std::size_t i = 0; i < todo.size() && todo.size() < kMost; ++i) {
-        const auto found = splits_.find(todo[i]);
-        if (found == splits_.end()) continue;
-        put_on_edge(found->second, e);
-        for (const VertexId end : edge_ends(todo[i])) todo.push_back(piece_edge(end.value(), found->second));
+    if (!splits_.contains(edges_.keys[e])) return;
+    std::vector<Vertex> chain;
+    append_split_chain(splits_, ends(e)[0], {ends(e)[1]}, chain);
+    chain.push_back(ends(e)[1]);
+    for (const Vertex v : chain) put_on_edge(v, e);
+    split_chains_.emplace_back(edges_.keys[e], std::move(chain));
+}
+
+/// What is near an edge that others have in pieces is a matter of these pieces: the others must find it, too.
+void ContactFinder::hand_down_to_splits() {
+    for (const auto& [key, chain] : split_chains_) {
+        for (const Vertex v : std::exchange(found_.on_edge[key], {})) {
+            if (std::find(chain.begin(), chain.end(), v) != chain.end()) continue;
+            std::size_t nearest = 0;
+            double least = std::numeric_limits<double>::infinity();
+            for (std::size_t i = 0; i + 1 < chain.size(); ++i)
+                if (const double gap = distance_to_segment(pool_[v], pool_[chain[i]], pool_[chain[i + 1]]); gap < least) {
+                    least = gap;
+                    nearest = i;
+                }
+            found_.on_edge[piece_edge(chain[nearest], chain[nearest + 1])].push_back(v);
+        }
+    }
+}
+
+void ContactFinder::gather_from_splits() {
+    for (const auto& [key, chain] : split_chains_) {
+        std::vector<Vertex> all;
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+            if (i > 0) all.push_back(chain[i]);
+            const auto found = found_.on_edge.find(piece_edge(chain[i], chain[i + 1]));
+            if (found == found_.on_edge.end()) continue;
+            all.insert(all.end(), found->second.begin(), found->second.end());
+            if (chain[i] > chain[i + 1]) std::reverse(all.end() - static_cast<std::ptrdiff_t>(found->second.size()), all.end());
+        }
+        found_.on_edge[key] = std::move(all);
     }
 }
 

@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "repair/edge_chain.hpp"
 #include "repair/vertex_pool.hpp"
-#include "validation/working_complex.hpp"
 #include "wellmesh/repair.hpp"
 
 namespace wellmesh {
@@ -44,12 +44,6 @@ struct Pieces {
     bool join_needles = true;              ///< whether a triangle that touches itself, being lower than the reach, is a contact
     RepairActions actions;
 };
-
-/// EdgeKey of two numbers.
-[[nodiscard]] constexpr EdgeKey piece_edge(std::uint32_t a, std::uint32_t b) { return edge_key(VertexId{a}, VertexId{b}); }
-
-/// A vertex inside an edge that has been replaced by two.
-using EdgeSplits = std::unordered_map<EdgeKey, std::uint32_t>;
 
 /// Merges triangles with the same corners (the windings add up) and wires with the same ends.
 void merge_copies(Pieces& pieces);

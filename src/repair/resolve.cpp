@@ -2,6 +2,8 @@
 #include "repair/resolve.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/vec3_math.hpp"
@@ -47,18 +49,22 @@ public:
     }
 
 private:
-    void append_chain(Vertex a, Vertex b, std::vector<Vertex>& loop) const {
-        loop.push_back(a);
-        const auto found = contacts_.on_edge.find(piece_edge(a, b));
-        if (found == contacts_.on_edge.end()) return;
-        if (a < b)
-            loop.insert(loop.end(), found->second.begin(), found->second.end());
-        else
-            loop.insert(loop.end(), found->second.rbegin(), found->second.rend());
+    /// All vertices from a to b, but for b.
+    void append_chain(Vertex a, Vertex b, std::vector<Vertex>& chain) const {
+        std::vector<Vertex> stops{b};  // from the last to the next
+        if (const auto found = contacts_.on_edge.find(piece_edge(a, b)); found != contacts_.on_edge.end()) {
+            stops.insert(stops.end(), found->second.begin(), found->second.end());
+            if (a < b) std::reverse(stops.begin() + 1, stops.end());
+        }
+        // Another triangle may have split the edge in this round already; two that split it each in their way would no longer meet.
+        append_split_chain(splits_, a, std::move(stops), chain);
     }
     void add(std::uint32_t number, const Piece& piece);
     void split_wires();
     void rename();
+    void rename_splits();
+    void note_split(const std::array<Vertex, 2>& edge, Vertex inside);
+    [[nodiscard]] Vec3 normal_of(const Piece& piece) const;
 
     StatedPieces& stated_;
     Pieces& pieces_;
@@ -67,6 +73,17 @@ private:
     Aliases aliases_;
     TriplePoints triples_;
 };
+
+/// A normal for the choice of a projection: of a triangle without area, one that keeps its vertices apart.
+Vec3 Round::normal_of(const Piece& piece) const {
+    const Vec3& a = pieces_.pool[piece.v[0]];
+    const Vec3 u = pieces_.pool[piece.v[1]] - a, v = pieces_.pool[piece.v[2]] - a, normal = cross(u, v);
+    constexpr double kNoise = 4 * std::numeric_limits<double>::epsilon();  // what products of rounded differences are off by, at least
+    if (norm(normal) > kNoise * norm(u) * norm(v)) return normal;
+    const Vec3 along = squared_norm(u) > squared_norm(v) ? u : v;
+    const double x = std::abs(along.x), y = std::abs(along.y), z = std::abs(along.z);
+    return x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+}
 
 void Round::add(std::uint32_t number, const Piece& piece) {
     const auto& inside = contacts_.inside[number];
@@ -87,14 +104,14 @@ void Round::add(std::uint32_t number, const Piece& piece) {
         task.self = number;
         task.only_border_encloses = true;
         task.points = inside;
-        const Vec3& a = pieces_.pool[piece.v[0]];
-        task.normal = cross(pieces_.pool[piece.v[1]] - a, pieces_.pool[piece.v[2]] - a);
+        task.normal = normal_of(piece);
         result = cut(std::move(task), pieces_.pool, triples_);
-        for (const auto& split : result.splits) splits_.try_emplace(piece_edge(split.edge[0], split.edge[1]), split.inside);
+        for (const auto& split : result.splits) note_split(split.edge, split.inside);
     }
     if (result.triangles.empty()) ++pieces_.actions.degenerate_dropped;
     for (const auto& [kept, gone] : result.stacked) aliases_.add(kept, gone);
-    for (const auto& v : result.triangles) pieces_.triangles.push_back({v, piece.source, piece.winding, true});
+    for (std::size_t i = 0; i < result.triangles.size(); ++i)
+        pieces_.triangles.push_back({result.triangles[i], piece.source, piece.winding * result.windings[i], true});
 }
 
 void Round::split_wires() {
@@ -126,11 +143,40 @@ void Round::rename() {
             }
         return wire.v[0] == wire.v[1];
     });
+    rename_splits();
     for (Vertex& v : pieces_.lone) v = aliases_(v);
     std::sort(pieces_.lone.begin(), pieces_.lone.end());
     pieces_.lone.erase(std::unique(pieces_.lone.begin(), pieces_.lone.end()), pieces_.lone.end());
     for (std::uint32_t& v : stated_.of_input)
         if (v != StatedPieces::kUnusable) v = aliases_(v);
+}
+
+/// If one triangle finds x on an edge from v, and another finds v on the edge from x to the same end, both within half the reach, the two are one.
+void Round::note_split(const std::array<Vertex, 2>& edge, Vertex inside) {
+    for (std::size_t i = 0; i < 2; ++i)
+        if (const auto found = splits_.find(piece_edge(edge[i], inside)); found != splits_.end() && found->second == edge[1 - i]) {
+            aliases_.add(inside, edge[1 - i]);
+            return;
+        }
+    splits_.try_emplace(piece_edge(edge[0], edge[1]), inside);
+}
+
+/// Those who have the edge under its new name must hear of the split, too. Where two edges become one it is split at both vertices, in their order.
+void Round::rename_splits() {
+    std::vector<std::pair<EdgeKey, Vertex>> old(splits_.begin(), splits_.end());
+    std::sort(old.begin(), old.end());
+    splits_.clear();
+    for (const auto& [key, inside] : old) {
+        Vertex a = aliases_(edge_ends(key)[0].value()), b = aliases_(edge_ends(key)[1].value());
+        const Vertex x = aliases_(inside);
+        while (a != b && x != a && x != b) {
+            const auto [known, fresh] = splits_.try_emplace(piece_edge(a, b), x);
+            const Vertex y = known->second;
+            if (fresh || y == x) break;
+            const Vec3 along = pieces_.pool[b] - pieces_.pool[a];
+            (dot(pieces_.pool[x] - pieces_.pool[y], along) < 0 ? b : a) = y;
+        }
+    }
 }
 
 }  // namespace

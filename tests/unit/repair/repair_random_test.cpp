@@ -2,6 +2,9 @@
 // Laws on random inputs: the result is a valid complex (but for open edges) or says that it is not, and covers the input within the bound.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <map>
+
 #include "../validation/plc_helpers.hpp"
 #include "core/rng.hpp"
 #include "validation/closest_points.hpp"
@@ -75,6 +78,46 @@ TEST(RepairRandom, SoupsBecomeComplexes) {
     }
     EXPECT_EQ(resolved, kSoups);
     EXPECT_GT(cut, kSoups / 2);
+}
+
+/// Sums of directions in which facets pass each edge; none is left for a surface without border.
+std::size_t unbalanced_edges(const Plc& plc) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> passed;
+    for (const PlcFacet& f : plc.facets)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = f.polygons[0][i], b = f.polygons[0][(i + 1) % 3];
+            passed[std::minmax(a, b)] += a < b ? 1 : -1;
+        }
+    return static_cast<std::size_t>(std::count_if(passed.begin(), passed.end(), [](const auto& edge) { return edge.second != 0; }));
+}
+
+TEST(RepairRandom, ClosedStaysClosed) {
+    // flat and needle-like tetrahedra that overlap; what is lower than the tolerance folds when it is joined
+    std::size_t resolved = 0;
+    constexpr std::uint64_t kClusters = 100;
+    for (std::uint64_t seed = 0; seed < kClusters; ++seed) {
+        SCOPED_TRACE(seed);
+        Plc plc = surface();
+        const std::uint32_t tets = 1 + static_cast<std::uint32_t>(seed % 4);
+        for (std::uint32_t t = 0; t < tets; ++t) {
+            for (std::uint64_t i = 0; i < 4; ++i) {
+                const auto coordinate = [&](std::uint64_t k) {  // two of three on a coarse lattice, but for some tolerances
+                    const double x = draw(seed, 12 * t + 3 * i + k), off = draw(seed, 1000 + 12 * t + 3 * i + k) - 0.5;
+                    return (t + k) % 3 == 0 ? x : std::floor(4 * x) / 4 + 0.004 * off;
+                };
+                plc.vertices.push_back({coordinate(0), coordinate(1), coordinate(2)});
+            }
+            const std::uint32_t a = 4 * t, b = a + 1, c = a + 2, d = a + 3;
+            for (const auto& f : {std::array{a, c, b}, std::array{a, b, d}, std::array{b, c, d}, std::array{c, a, d}})
+                plc.facets.push_back({{{f[0], f[1], f[2]}}, {}, 0});
+        }
+        const RepairResult r = repair(plc, {.tolerance = 1e-3});
+        if (!r.resolved) continue;
+        ++resolved;
+        EXPECT_EQ(unbalanced_edges(r.plc), 0U) << r.summary;
+        EXPECT_EQ(count(r.diagnosis, DefectKind::open_edge), 0U);
+    }
+    EXPECT_GE(resolved, kClusters - 2);
 }
 
 TEST(RepairRandom, ResultsAreStable) {
