@@ -76,6 +76,12 @@ public:
     bool step();
     [[nodiscard]] bool idle() const { return segments_.empty() && faces_.empty() && !mesh_.has_broken() && !cells_stale_; }
     [[nodiscard]] std::size_t waiting() const { return segments_.size() + faces_.size(); }
+    /// The mesh was put back to an earlier one that conformed: what waits is of the abandoned one.
+    void forget_waiting() {
+        segments_.clear();
+        faces_.clear();
+        cells_stale_ = false;
+    }
 
     /// Looks for encroached subsegments and subfaces among the new tetrahedra.
     void enqueue_encroached(const std::vector<TetId>& tets);

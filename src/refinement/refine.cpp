@@ -137,12 +137,21 @@ RunGuard::Verdict Refiner::refine() {
         // A cascade at acute input that met the ceiling: the mesh before it is as good as any.
         if (e.code() != ErrorCode::budget_exhausted || !last_) throw;
         mesh_ = std::move(*last_);
+        forget_waiting();
         verdict = RunGuard::Verdict::out_of_vertices;
     }
     keeps_last_ = false;
     if (last_ && guard_.has_too_many(mesh_.vertex_count())) mesh_ = std::move(*last_);
     last_.reset();
     return verdict;
+}
+
+void Refiner::forget_waiting() {
+    by_size_.clear();
+    by_radius_edge_.clear();
+    by_sliver_.clear();
+    squared_size_slack_ = 1;
+    boundary_.forget_waiting();
 }
 
 /// A cascade may take more vertices than are left, by hundreds: then the last copy is the result. One is made whenever half as many are left as at the

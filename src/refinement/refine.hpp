@@ -36,6 +36,9 @@ public:
     /// kSizeTolerance of their bound stay, as moves may have made them.
     RunGuard::Verdict split(TetId t, InsertionReason reason);
 
+    /// The mesh was put back to an earlier one after a split threw: what waits is of the abandoned one.
+    void forget_waiting();
+
     /// From now on every pick avoids new small slivers, and refine() splits slivers, too, if the rule says so, after all else.
     void set_sliver_rule(const SliverRule& rule);
     /// From so many vertices on slivers are split no more; size and radius-edge ratio still are. Without: for as long as there are slivers.

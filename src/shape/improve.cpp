@@ -270,6 +270,7 @@ RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, const Conformin
     } catch (const MeshError& e) {
         if (e.code() != ErrorCode::budget_exhausted) throw;
         mesh_ = last;
+        refiner_.forget_waiting();
         collect_bad();
         return RunGuard::Verdict::out_of_vertices;
     }

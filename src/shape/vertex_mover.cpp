@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "conforming/place_point.hpp"
 #include "core/rng.hpp"
@@ -20,6 +21,7 @@ constexpr double kFlatCosine = 0.99996;  // of half a degree: where the input is
 constexpr std::array kFineSteps{0.1, -0.1, 0.03, -0.03, 0.01, -0.01, 0.003, -0.003};  // and small steps, in reaches, are all that fit between copies
 constexpr std::size_t kTrials = 3;   // how many of the best candidates are tried in earnest where the boundary may still refuse them
 constexpr std::size_t kExcusedTrials = 12;  // and where the star has tetrahedra that are excused, which candidates do not know
+constexpr double kRefused = std::numeric_limits<double>::infinity();  // worse than any shape: the place itself is not to be had
 
 }  // namespace
 
@@ -165,16 +167,16 @@ double VertexMover::try_point(const Vec3& p, double limit) {
     Triangulation& tri = mesh_.triangulation();
     ++statistics_.evaluations;
     const TetId seed = conflicting_tet(p, limit);
-    if (!seed.valid()) return kNoAngleCosine;
+    if (!seed.valid()) return kRefused;
     // Where the cavity is in two cells the point encroaches what is between them: any tetrahedron of it tells the cell.
     const bool inside = where_.carrier == CarrierKind::region;
-    if (inside && mesh_.cell(seed).value() != where_.carrier_id) return kNoAngleCosine;
+    if (inside && mesh_.cell(seed).value() != where_.carrier_id) return kRefused;
     StarJudge star(mesh_, judge_, where_, p, limit);
-    if (!tri.grow_conflict_cavity(p, seed, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) return kNoAngleCosine;
+    if (!tri.grow_conflict_cavity(p, seed, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) return kRefused;
     for (std::size_t i = 0; i < filling_.size(); ++i)
-        if (filling_cosine_[i] > limit && !tri.in_last_cavity(filling_[i])) return kNoAngleCosine;
-    if (!encroaches_nothing()) return kNoAngleCosine;
-    if (!inside && (!mesh_.holds_carrier(cavity_, where_) || mesh_.would_break(cavity_, where_))) return kNoAngleCosine;
+        if (filling_cosine_[i] > limit && !tri.in_last_cavity(filling_[i])) return kRefused;
+    if (!encroaches_nothing()) return kRefused;
+    if (!inside && (!mesh_.holds_carrier(cavity_, where_) || mesh_.would_break(cavity_, where_))) return kRefused;
     return star.worst();
 }
 

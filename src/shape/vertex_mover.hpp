@@ -74,7 +74,7 @@ private:
     void offer(const Vec3& offset, double reach);
     [[nodiscard]] bool find_placement();
     [[nodiscard]] Vec3 on_carrier(const Vec3& p) const;
-    /// Cosine of the star that p would get, more than `limit` as soon as that is certain. Leaves p's cavity.
+    /// Cosine of the star that p would get, more than `limit` as soon as that is certain, infinite if p is not to be had. Leaves p's cavity.
     [[nodiscard]] double try_point(const Vec3& p, double limit);
     [[nodiscard]] TetId conflicting_tet(const Vec3& p, double limit);
     [[nodiscard]] bool encroaches_nothing();
