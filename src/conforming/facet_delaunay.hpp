@@ -18,6 +18,7 @@ public:
         std::array<VertexId, 3> corners{};
     };
 
+    /// @pre the facet's segments are chains of labelled edges: match_faces() tells inside from outside by them.
     FacetDelaunay(const ConformingMesh& mesh, FacetId f);
 
     /// Compares with the mesh. @return triangles that are covered by no faces of the mesh, largest first.

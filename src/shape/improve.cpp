@@ -17,6 +17,7 @@ constexpr unsigned kSplitRounds = 16;     // on one rung,
 constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing out again, else removals and splits may undo each other for ever
 constexpr double kVertexBudget = 1.5;     // splits may not add more than half the vertices again,
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
+constexpr std::uint64_t kCascadeCeiling = 2, kCascadeAllowance = 1000;  // beyond the budget; more is a cascade beside an acute angle
 constexpr unsigned kTriesUntouched = 3;   // failures after which a tetrahedron rests until its neighbourhood changes
 constexpr unsigned kTriesInAll = 4;       // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 constexpr unsigned kLastTries = 3;
@@ -251,6 +252,7 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
         if (!t.valid()) continue;
         for (const VertexId v : b.corners) marked_[v.index()] = stamp;
         ++splits_;
+        splitting_ = key_of(b.corners);
         const RunGuard::Verdict verdict = refiner_.split(t, InsertionReason::sliver);
         if (verdict != RunGuard::Verdict::go_on) return verdict;
     }
@@ -263,17 +265,21 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
     return RunGuard::Verdict::go_on;
 }
 
-/// The same, but a cascade at acute input that meets the algorithm's ceiling is worth nothing half done.
+/// The same, but a split that sets off a cascade at acute input, which ends at the algorithm's ceiling or where segments can't be split any further, is
+/// undone with all others since `last`, and not tried again.
 RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, const ConformingMesh& last) {
+    RunGuard::Verdict verdict = RunGuard::Verdict::out_of_vertices;
     try {
-        return split_worse_than(cosine);
+        verdict = split_worse_than(cosine);
     } catch (const MeshError& e) {
         if (e.code() != ErrorCode::budget_exhausted) throw;
-        mesh_ = last;
-        refiner_.forget_waiting();
-        collect_bad();
-        return RunGuard::Verdict::out_of_vertices;
     }
+    if (verdict != RunGuard::Verdict::out_of_vertices || guard_.user_limit_spent()) return verdict;
+    given_up_.insert(splitting_);
+    mesh_ = last;
+    refiner_.forget_waiting();
+    collect_bad();
+    return RunGuard::Verdict::go_on;
 }
 
 /// Splits and moves until nothing is worse than this rung of the ladder.
@@ -373,6 +379,7 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
 
 RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
     const std::size_t vertices = mesh_.vertex_count(), slots = mesh_.vertex_slots();
+    if (refiner_.knows_forced()) guard_.set_ceiling(kCascadeCeiling * vertices + kCascadeAllowance);
     RunGuard::Verdict verdict = aim_at(std::min(angle_deg, kStraightDeg), vertices);
     // Beyond, most tetrahedra are bad: aiming at all of them at once spends its time on the many and leaves the worst. What a rung has reached is
     // kept if the next one ends lower, out of reach or out of time.

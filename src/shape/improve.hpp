@@ -104,6 +104,7 @@ private:
     std::vector<std::uint64_t> marked_;              // per vertex: stamp of the last collection that it belongs to
     std::unordered_map<std::uint64_t, Stuck> stuck_;  // by corners; looked up, never iterated
     std::unordered_set<std::uint64_t> given_up_;     // by corners: tetrahedra that no rung mended
+    std::uint64_t splitting_ = 0;                    // the tetrahedron that is being split, by its corners
     std::vector<Tried> tried_;                       // per vertex
     std::vector<Bad> heap_, left_;
     std::vector<VertexId> around_;
