@@ -20,6 +20,7 @@
 #include "core/run_guard.hpp"
 #include "refinement/refine.hpp"
 #include "shape/best_insertion.hpp"
+#include "shape/chains.hpp"
 #include "shape/tet_judge.hpp"
 #include "shape/thin_out.hpp"
 #include "shape/vertex_mover.hpp"
@@ -39,7 +40,8 @@ public:
           judge_(mesh, refiner.sizes(), refiner.max_radius_edge()),
           mover_(mesh, boundary, judge_, seed),
           insertion_(mesh, boundary, judge_, seed),
-          thinning_(mesh, boundary, guard, judge_, mover_) {}
+          chains_(mesh, boundary, judge_, mover_, seed),
+          thinning_(mesh, guard, chains_) {}
 
     /// Works until every dihedral angle of the domain is at least `angle_deg`, or nothing helps, or the guard says stop. Angles beyond what meshes
     /// mostly reach are approached in steps, so that asking for more gives no less.
@@ -77,6 +79,8 @@ private:
     RunGuard::Verdict passes(unsigned samples, unsigned most, LastResort last_resort);
     bool mend(const Bad& bad, unsigned samples, LastResort last_resort);
     RunGuard::Verdict smooth_around_bad(unsigned rings);
+    RunGuard::Verdict rescue();
+    RunGuard::Verdict thin_out(std::size_t first_new, std::size_t enough);
     RunGuard::Verdict climb(double rung_cosine, std::size_t vertices_at_start, bool& reached);
     RunGuard::Verdict split_worse_than(double cosine);
     RunGuard::Verdict split_or_go_back(double cosine, const ConformingMesh& last);
@@ -95,6 +99,7 @@ private:
     TetJudge judge_;
     VertexMover mover_;
     BestInsertion insertion_;
+    Chains chains_;
     Thinning thinning_;
 
     double goal_cosine_ = 1;

@@ -4,44 +4,27 @@
 // if all of it is as good as the goal then, the chain is kept, else undone.
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include <cstddef>
 
-#include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
-#include "shape/tet_judge.hpp"
-#include "shape/vertex_mover.hpp"
+#include "shape/chains.hpp"
 
 namespace wellmesh {
 
 class Thinning {
 public:
-    Thinning(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const TetJudge& judge, VertexMover& mover)
-        : mesh_(mesh), boundary_(boundary), guard_(guard), judge_(judge), mover_(mover) {}
+    Thinning(ConformingMesh& mesh, RunGuard& guard, Chains& chains) : mesh_(mesh), guard_(guard), chains_(chains) {}
 
     /// Takes out what can go of the vertices from slot `first_new` on, then of all as long as there are more than `enough`.
     RunGuard::Verdict run(std::size_t first_new, std::size_t enough);
 
 private:
     RunGuard::Verdict sweep(std::size_t first, std::size_t enough, std::size_t trials);
-    bool dissolve(VertexId v);
-    bool merge(VertexId v, VertexId into, const Vec3& home, double limit);
-    bool mend();
-    void take_note();
-    void find_neighbours(VertexId v);
-    [[nodiscard]] bool all_is_well();
 
     ConformingMesh& mesh_;
-    BoundaryRefiner& boundary_;
     RunGuard& guard_;
-    const TetJudge& judge_;
-    VertexMover& mover_;
-
-    std::vector<TetStore::Corners> bad_;  // made by the chain
-    std::vector<VertexId> touched_;       // by the chain; may repeat
-    std::vector<VertexId> neighbours_;
-    std::vector<TetId> star_;
+    Chains& chains_;
 };
 
 }  // namespace wellmesh

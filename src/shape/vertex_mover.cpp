@@ -296,13 +296,15 @@ bool VertexMover::drop(VertexId v) {
 bool VertexMover::pull(VertexId v, const Vec3& target, double limit) {
     if (!look_at_star(v)) return false;
     const Vec3 whole = target - home_;
+    const bool is_excused = beside_excused_ && excuses && unexcused_star_cosine(limit) < star_cosine_;
     if (!take_out()) return false;
     ranked_.clear();
+    const double bound = is_excused ? kNoAngleCosine : limit;
     for (const double part : {0.5, 0.35, 0.65, 0.2, 0.8}) {
         const Vec3 p = on_carrier(home_ + part * whole);
-        if (const double cosine = try_point(p, limit); cosine <= limit) ranked_.push_back({p, cosine});
+        if (const double cosine = try_point(p, bound); cosine <= bound) ranked_.push_back({p, cosine});
     }
-    if (put_best(limit, kTrials)) {
+    if (put_best(limit, is_excused ? kExcusedTrials : kTrials)) {
         ++statistics_.moves;
         return true;
     }

@@ -205,7 +205,8 @@ TEST_P(Moves, ThinningTakesVerticesOutAndKeepsTheGoal) {
         if (m.judge.counts(TetId{i})) worst = std::max(worst, m.judge.shape_badness(TetId{i}));
     m.judge.set_goal(worst, TetJudge::kNoAspect);
     const std::size_t count = mesh.vertex_count();
-    Thinning thinning(mesh, m.staged.boundary, m.staged.guard, m.judge, m.mover);
+    Chains chains(mesh, m.staged.boundary, m.judge, m.mover, 1);
+    Thinning thinning(mesh, m.staged.guard, chains);
     ASSERT_EQ(thinning.run(mesh.vertex_slots(), count), RunGuard::Verdict::go_on);
     EXPECT_EQ(mesh.vertex_count(), count) << "none is new, and there are not too many";
     const std::size_t enough = count - std::min<std::size_t>(count - mesh.plc().vertices.size(), 10) / 2;
