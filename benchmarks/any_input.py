@@ -120,8 +120,9 @@ class Models:
         result = self.run(["doctor", model, "--repair", repaired, "--json", report], limit)
         row["repair"] = {"exit": result.code, "seconds": result.seconds, "report": read_json(report).get("repair", {})}
         if not os.path.exists(repaired):
-            row["verdict"] += f"; not repaired: {first_line(result.errors) or 'no reason given'}"
-            row["ok"] = row["ok"] and bool(result.errors)
+            reason = result.errors or row["repair"]["report"].get("summary", "")
+            row["verdict"] += f"; not repaired: {first_line(reason) or 'no reason given'}"
+            row["ok"] = row["ok"] and bool(reason)
             return
         row["mesh_of_repaired"] = again = self.mesh(repaired, repaired, folder, limit)
         row["verdict"] += "; repaired: " + (f"ok, {again['vertices']} vertices" if again["ok"] else again["why"])
