@@ -19,6 +19,7 @@ constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing ou
 constexpr double kVertexBudget = 1.5;     // splits may not add more than half the vertices again,
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
 constexpr std::uint64_t kCascadeCeiling = 2, kCascadeAllowance = 1000;  // beyond the budget; more is a cascade beside an acute angle
+constexpr unsigned kMostCascades = 16;    // that are undone, one tetrahedron each given up, before a round of splits is
 constexpr unsigned kTriesUntouched = 3;   // failures after which a tetrahedron rests until its neighbourhood changes
 constexpr unsigned kTriesInAll = 4;       // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 constexpr unsigned kLastTries = 3;
@@ -269,19 +270,21 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
 }
 
 /// The same, but a split that sets off a cascade at acute input, which ends at the algorithm's ceiling or where segments can't be split any further, is
-/// undone with all others since `last`, and not tried again.
+/// undone with all others since `last`; they are tried again, but for that one.
 RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, const ConformingMesh& last) {
-    RunGuard::Verdict verdict = RunGuard::Verdict::out_of_vertices;
-    try {
-        verdict = split_worse_than(cosine);
-    } catch (const MeshError& e) {
-        if (e.code() != ErrorCode::budget_exhausted) throw;
+    for (unsigned cascades = 0; cascades < kMostCascades; ++cascades) {
+        RunGuard::Verdict verdict = RunGuard::Verdict::out_of_vertices;
+        try {
+            verdict = split_worse_than(cosine);
+        } catch (const MeshError& e) {
+            if (e.code() != ErrorCode::budget_exhausted) throw;
+        }
+        if (verdict != RunGuard::Verdict::out_of_vertices || guard_.user_limit_spent()) return verdict;
+        given_up_.insert(splitting_);
+        mesh_ = last;
+        refiner_.forget_waiting();
+        collect_bad();
     }
-    if (verdict != RunGuard::Verdict::out_of_vertices || guard_.user_limit_spent()) return verdict;
-    given_up_.insert(splitting_);
-    mesh_ = last;
-    refiner_.forget_waiting();
-    collect_bad();
     return RunGuard::Verdict::go_on;
 }
 
