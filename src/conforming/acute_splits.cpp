@@ -48,6 +48,15 @@ std::optional<CarriedWitness> BoundaryRefiner::nearest_witness(const Vec3& centr
     return witness_of(fallback);
 }
 
+/// A vertex no farther than this from p.
+VertexId BoundaryRefiner::vertex_within(const Vec3& p, double reach, TetId near) {
+    if (!mesh_.triangulation().in_box(p)) return {};
+    const TetId t = mesh_.triangulation().locate(p, near);
+    for (const VertexId v : mesh_.tets().corners(t))
+        if (v != kInfiniteVertex && squared_distance(mesh_.point(v), p) <= reach * reach) return v;
+    return {};
+}
+
 VertexId BoundaryRefiner::ball_around(const Cavity& cavity) {
     if (!acute_.any()) return {};
     const std::size_t inputs = mesh_.plc().vertices.size();
@@ -286,11 +295,25 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std:
     };
     // A copy, or a point of a ball's sphere, within rounding of a vertex would be that vertex once more.
     const auto is_new = [&](const Vec3& p) { return found(p) && distance_to_nearest(mesh_, cavity_) >= kSameVertex * shortest_side(a, b, c); };
-    if (!is_new(place.point) && !retreat()) return SplitOutcome::gone;
+    // Another split of the same round has put it there: the facet's triangulation is another one now.
+    const auto is_done = [&](const Vec3& p) {
+        const VertexId w = labelled ? VertexId{} : vertex_within(p, kSameVertex * shortest_side(a, b, c), near);
+        return w.valid() && std::find(corners.begin(), corners.end(), w) == corners.end() && mesh_.is_on_facet(w, f);
+    };
+    const auto on_sphere = [&](VertexId v, const Vec3& p) {
+        const Vec3 out = p - mesh_.point(v);
+        return project_to_facet(facet, mesh_.point(v) + (acute_.ball_radius(v) / norm(out)) * out);
+    };
+    if (!is_new(place.point)) {
+        if (is_done(place.point)) return SplitOutcome::gone;
+        const VertexId apex = place.info.ball;
+        if (!(apex.valid() && is_new(cut_arc(f, corners, apex, std::nullopt))) && !retreat()) return SplitOutcome::gone;
+    }
     if (const VertexId v = ball_around(cavity_); v.valid() && !place.info.ball.valid()) {
-        const Vec3 out = cavity_.point - mesh_.point(v);
-        const Vec3 p = project_to_facet(facet, mesh_.point(v) + (acute_.ball_radius(v) / norm(out)) * out);
-        if (is_new(p)) place.info.ball = v;
+        const Vec3 p = on_sphere(v, cavity_.point);
+        const bool is_free = is_new(p);
+        if (!is_free && is_done(p)) return SplitOutcome::gone;
+        if (is_free || is_new(on_sphere(v, middle))) place.info.ball = v;
         else if (!retreat()) return SplitOutcome::gone;
     }
     find_encroached(cavity_, where, encroached_segments_, encroached_faces_);

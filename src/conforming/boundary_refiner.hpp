@@ -148,6 +148,7 @@ private:
     [[nodiscard]] std::optional<CarriedWitness> nearest_witness(const Vec3& centre, double radius, TetId near, VertexId fallback);
     [[nodiscard]] std::optional<AcutePlace> place_on_segment(const Subsegment& s, const SplitRequest& request);
     [[nodiscard]] AcutePlace place_on_facet(FacetId f, const std::array<VertexId, 3>& corners, TetId near, const SplitRequest& request);
+    [[nodiscard]] VertexId vertex_within(const Vec3& p, double reach, TetId near);
     [[nodiscard]] VertexId fan_apex(const std::array<VertexId, 3>& corners);
     [[nodiscard]] Vec3 cut_arc(FacetId f, const std::array<VertexId, 3>& corners, VertexId apex, const std::optional<CarriedWitness>& q);
     [[nodiscard]] Vec3 at_distance(SegmentId s, VertexId end, double d) const;
