@@ -158,10 +158,10 @@ private:
     bool has_infinity_ = false;
 };
 
-bool Triangulation::find_hole(VertexId v, Hole& hole) {
+bool Triangulation::find_hole(VertexId v, Hole& hole, std::size_t most_tets) {
     hole.vertex = v;
     find_star(v, hole.star);
-    return HoleFiller(*this, hole).fill();
+    return hole.star.size() <= most_tets && HoleFiller(*this, hole).fill();
 }
 
 void Triangulation::remove_vertex(const Hole& hole) {

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -104,8 +105,9 @@ public:
     void insert_vertex(VertexId v, const Cavity& cavity);
     [[nodiscard]] const std::vector<TetId>& new_tets() const { return new_tets_; }
 
-    /// Triangulates the hole that v would leave. @return false if v can't go (fewer than four affinely independent points would stay).
-    bool find_hole(VertexId v, Hole& hole);
+    /// Triangulates the hole that v would leave. @return false if v can't go (fewer than four affinely independent points would stay) or its star has more than
+    /// `most_tets`.
+    bool find_hole(VertexId v, Hole& hole, std::size_t most_tets = std::numeric_limits<std::size_t>::max());
     /// Replaces the star by the filling (ids in new_tets(), in the order of hole.filling). The point stays stored, not inserted.
     void remove_vertex(const Hole& hole);
     void set_point(VertexId v, const Vec3& p) { vertices_[v.index()].point = p; }  ///< @pre v is not inserted

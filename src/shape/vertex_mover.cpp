@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kReach = 0.3;       // of the mean incident edge: how far a vertex may be sampled; other candidates may go 1.5 times as far
 constexpr double kNearReach = 0.4;   // of that: every other sample stays this near
+/// A hole costs the square of its tetrahedra. Stars have 25, and hundreds only where an acute angle forces them.
+constexpr std::size_t kMostTets = 400;
 constexpr double kGain = 0.1;        // of the way to the goal, in cosine: less is no progress
 constexpr double kFlatCosine = 0.99996;  // of half a degree: where the input is acute anything better than flat is progress,
 constexpr std::array kFineSteps{0.1, -0.1, 0.03, -0.03, 0.01, -0.01, 0.003, -0.003};  // and small steps, in reaches, are all that fit between copies
@@ -52,7 +54,7 @@ bool VertexMover::find_placement() {
 bool VertexMover::look_at_star(VertexId v) {
     if (mesh_.info(v).carrier == CarrierKind::input_vertex || !mesh_.triangulation().is_inserted(v)) return false;
     vertex_ = v;
-    if (!mesh_.triangulation().find_hole(v, hole_) || !find_placement()) return false;
+    if (!mesh_.triangulation().find_hole(v, hole_, kMostTets) || !find_placement()) return false;
     home_ = mesh_.point(v);
     optimal_ = middle_ = Vec3{};
     star_cosine_ = 0;
@@ -173,6 +175,7 @@ double VertexMover::try_point(const Vec3& p, double limit) {
     if (inside && mesh_.cell(seed).value() != where_.carrier_id) return kRefused;
     StarJudge star(mesh_, judge_, where_, p, limit);
     if (!tri.grow_conflict_cavity(p, seed, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) return kRefused;
+    if (cavity_.boundary.size() > kMostTets) return kRefused;
     for (std::size_t i = 0; i < filling_.size(); ++i)
         if (filling_cosine_[i] > limit && !tri.in_last_cavity(filling_[i])) return kRefused;
     if (!encroaches_nothing()) return kRefused;

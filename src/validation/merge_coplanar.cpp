@@ -2,8 +2,10 @@
 #include "validation/merge_coplanar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "core/vec3_math.hpp"
 
@@ -50,6 +52,7 @@ private:
     void split_folded();
     std::vector<char> turns(const std::vector<std::uint32_t>& triangles) const;
     bool is_folded(const Set& set) const;
+    std::vector<std::uint32_t> turned_out(const Set& set) const;
     FacetGroups take_groups();
 
     const CleanInput& input_;
@@ -222,17 +225,78 @@ bool Merger::is_folded(const Set& set) const {
     return std::min(front, back) > tolerance_;
 }
 
+/// Triangles that turn the wrong way in the set's plane because a vertex inside the set lies outside of its outline there: no facet in that plane would
+/// have this vertex.
+std::vector<std::uint32_t> Merger::turned_out(const Set& set) const {
+    const std::vector<char> turned = turns(set.triangles);
+    const auto flat = [&](VertexId v) {
+        const Vec3 d = point(v) - set.plane.origin;
+        return std::array<double, 2>{dot(d, set.plane.axis_u), dot(d, set.plane.axis_v)};
+    };
+    const auto twice_area = [](const auto& a, const auto& b, const auto& c) { return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); };
+    std::vector<double> areas;
+    double sum = 0;
+    for (std::size_t i = 0; i < set.triangles.size(); ++i) {
+        const auto& v = soup_.triangles[set.triangles[i]].v;
+        areas.push_back((turned[i] ? -1 : 1) * twice_area(flat(v[0]), flat(v[1]), flat(v[2])));
+        sum += areas.back();
+    }
+    if (std::none_of(areas.begin(), areas.end(), [&](double a) { return a * sum <= 0; })) return {};
+    std::unordered_set<std::uint32_t> members(set.triangles.begin(), set.triangles.end());
+    std::vector<std::array<VertexId, 2>> outline;
+    std::unordered_set<std::uint32_t> on_outline;
+    for (const std::uint32_t t : set.triangles)
+        for (std::uint32_t s = 0; s < 3; ++s) {
+            const std::uint32_t edge = edges_.edge_of[3 * t + s];
+            const auto around = edges_.around(edge);
+            const auto within = static_cast<std::size_t>(std::count_if(around.begin(), around.end(), [&](std::uint32_t c) { return members.contains(c / 3); }));
+            if (around.size() == 2 && within == 2) continue;
+            const auto& v = soup_.triangles[t].v;
+            if (within == 1) outline.push_back({v[s], v[(s + 1) % 3]});
+            on_outline.insert(v[s].value());
+            on_outline.insert(v[(s + 1) % 3].value());
+        }
+    // Is there an odd number of outline edges on the ray from the vertex along u?
+    const auto is_inside = [&](const std::array<double, 2>& p) {
+        bool inside = false;
+        for (const auto& e : outline) {
+            const auto a = flat(e[0]), b = flat(e[1]);
+            if ((a[1] > p[1]) != (b[1] > p[1])) inside = inside != ((twice_area(a, b, p) > 0) == (b[1] > a[1]));
+        }
+        return inside;
+    };
+    std::vector<std::uint32_t> out;
+    for (std::size_t i = 0; i < set.triangles.size(); ++i) {
+        const auto& v = soup_.triangles[set.triangles[i]].v;
+        if (areas[i] * sum <= 0 && std::any_of(v.begin(), v.end(), [&](VertexId w) { return !on_outline.contains(w.value()) && !is_inside(flat(w)); }))
+            out.push_back(set.triangles[i]);
+    }
+    return out;
+}
+
 void Merger::split_folded() {
+    constexpr auto kNone = static_cast<std::uint32_t>(-1);
     set_of_triangle_.resize(soup_.triangles.size());
-    std::vector<char> folded(soup_.triangles.size(), 0);
+    enum class Fate : std::uint8_t { stays, splits, peels };
+    std::vector<Fate> fate(soup_.triangles.size(), Fate::stays);  // of sets, at representatives
+    std::vector<char> peeled(soup_.triangles.size(), 0);
+    std::vector<std::uint32_t> rest(soup_.triangles.size(), kNone);  // representative of what stays of a set
     for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t) {
         const std::uint32_t r = sets_.find(t);
-        if (r == t) folded[r] = is_folded(set_of_[r]);
-        set_of_triangle_[t] = folded[r] ? before_tolerance_.find(t) : r;  // r <= t
+        if (r == t) {
+            if (is_folded(set_of_[r])) fate[r] = Fate::splits;
+            else
+                for (const std::uint32_t out : turned_out(set_of_[r])) {
+                    fate[r] = Fate::peels;
+                    peeled[out] = 1;
+                }
+        }
+        if (!peeled[t] && rest[r] == kNone) rest[r] = t;  // r <= t
+        set_of_triangle_[t] = fate[r] == Fate::splits ? before_tolerance_.find(t) : peeled[t] ? t : rest[r];
     }
     std::vector<Set> rebuilt(soup_.triangles.size());
     for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t)
-        if (folded[sets_.find(t)]) {
+        if (fate[sets_.find(t)] != Fate::stays) {
             Set& set = rebuilt[set_of_triangle_[t]];
             set.triangles.push_back(t);
             set.vertices.insert(set.vertices.end(), soup_.triangles[t].v.begin(), soup_.triangles[t].v.end());
