@@ -61,6 +61,7 @@ private:
     const Plc& plc_;
     const double tolerance_;
     DisjointSets sets_, before_tolerance_;
+    std::vector<std::uint32_t> peeled_;
     std::vector<std::uint32_t> set_of_triangle_;  // after folded ones were split: representatives
     std::vector<Candidate> candidates_;
     std::vector<Set> set_of_;  // at representatives
@@ -289,6 +290,7 @@ void Merger::split_folded() {
                 for (const std::uint32_t out : turned_out(set_of_[r])) {
                     fate[r] = Fate::peels;
                     peeled[out] = 1;
+                    peeled_.push_back(out);
                 }
         }
         if (!peeled[t] && rest[r] == kNone) rest[r] = t;  // r <= t
@@ -310,6 +312,7 @@ void Merger::split_folded() {
 
 FacetGroups Merger::take_groups() {
     FacetGroups groups;
+    groups.peeled = peeled_;
     groups.group_of.resize(soup_.triangles.size());
     groups.is_turned.resize(soup_.triangles.size());
     for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t) {

@@ -16,6 +16,8 @@ struct FacetGroups {
     std::vector<char> is_segment;                      ///< for each edge of the table
     /// For each soup triangle, 1 if it must be turned to agree with its group's normal.
     std::vector<char> is_turned;
+    /// Needles kept out of a group within rounding, as they turn the wrong way in its plane and take a vertex out of its outline.
+    std::vector<std::uint32_t> peeled;
 };
 
 /// Joins triangles across edges that are not hard, have exactly two triangles and the same marker on both sides: always within one

@@ -31,6 +31,23 @@ void find_thin_features(const CleanInput& input, const Soup& soup, const EdgeTab
                                format_point(point(v)), gap, what, report.name_facet(facet), limit),
                    gap);
     };
+    // Both ends of its width may be off the plane of the facet beside it by that facet's rounding: below that no mesh can have both.
+    for (const std::uint32_t t : groups.peeled)
+        for (std::uint32_t s = 0; s < 3; ++s) {
+            const auto& c = soup.triangles[t].v;
+            const Vec3 edge = point(c[(s + 1) % 3]) - point(c[s]);
+            const double height = norm(cross(edge, point(c[(s + 2) % 3]) - point(c[s]))) / norm(edge);
+            for (const std::uint32_t corner : edges.around(edges.edge_of[3 * t + s])) {
+                const double residual = groups.planes[groups.group_of[corner / 3]].residual;
+                if (corner / 3 == t || height > 2 * residual) continue;
+                const VertexId apex = c[(s + 2) % 3];
+                const std::uint32_t facet = input.facets[soup.triangles[corner / 3].facet].source, number = input.source_vertex[apex.index()];
+                report.add(DefectKind::feature_too_thin, Severity::error, {report.vertex(number), report.facet(facet, point(apex))},
+                           fmt::format("{} at {} is {:.2g} away from an edge of {}, which is off its plane by {:.2g}: merge or move it", report.name_vertex(number),
+                                       format_point(point(apex)), height, report.name_facet(facet), residual),
+                           height);
+            }
+        }
     for (std::size_t i = 0; i < input.points.size(); ++i) {
         const VertexId v{i};
         Box around;
