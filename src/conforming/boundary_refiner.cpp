@@ -216,6 +216,14 @@ void BoundaryRefiner::give_up(const Subsegment& s) const {
                     {{EntityKind::segment, s.segment.value() + 1, middle}});
 }
 
+void BoundaryRefiner::give_up(const Subface& s) const {
+    const Vec3 middle = (1.0 / 3) * (mesh_.point(s.corners[0]) + mesh_.point(s.corners[1]) + mesh_.point(s.corners[2]));
+    const std::size_t facet = mesh_.plc().facets[s.facet.index()].source_facet + 1;
+    throw MeshError(ErrorCode::budget_exhausted, guard_.stage(),
+                    fmt::format("facet {} can't be split any further: its pieces have shrunk to the rounding of its plane near ({}, {}, {})", facet, middle.x, middle.y, middle.z),
+                    {{EntityKind::facet, facet, middle}});
+}
+
 /// Inserts cavity_.point on the subsegment.
 VertexId BoundaryRefiner::insert_on_segment(const Subsegment& s, const VertexInfo& info) {
     const VertexId v = mesh_.insert(cavity_, Placement::on_segment(s), info);
@@ -332,7 +340,11 @@ bool BoundaryRefiner::step() {
         const WaitingFace w = faces_.front();
         faces_.pop_front();
         poll_or_throw(w.s.facet);
-        if (split(w.s, {InsertionReason::encroachment, w.encroacher}) == SplitOutcome::deferred) faces_.push_back(w);
+        const std::size_t before = mesh_.vertex_count();
+        const SplitOutcome outcome = split(w.s, {InsertionReason::encroachment, w.encroacher});
+        if (mesh_.vertex_count() != before) stalled_ = 0;
+        else if (outcome == SplitOutcome::gone ? mesh_.find_subface(w.s).valid() : outcome == SplitOutcome::deferred && ++stalled_ > faces_.size()) give_up(w.s);
+        if (outcome == SplitOutcome::deferred) faces_.push_back(w);
         return true;
     }
     return false;

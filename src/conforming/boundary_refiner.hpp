@@ -156,6 +156,7 @@ private:
     [[nodiscard]] Subsegment first_crossed(FacetId f, const Vec3& p, const Vec3& q);
     VertexId insert_on_segment(const Subsegment& s, const VertexInfo& info);
     [[noreturn]] void give_up(const Subsegment& s) const;
+    [[noreturn]] void give_up(const Subface& s) const;
     SplitOutcome split_acute(const Subsegment& s, const AcutePlace& place, const SplitRequest& request);
     SplitOutcome split_acute(FacetId f, const std::array<VertexId, 3>& corners, bool labelled, TetId near, const SplitRequest& request);
 
@@ -168,6 +169,7 @@ private:
     Cavity cavity_;
     std::vector<Subsegment> encroached_segments_;
     std::vector<Subface> encroached_faces_;
+    std::size_t stalled_ = 0;  // subfaces in a row that wait for others to be split first
     std::uint64_t refused_ = 0;
     double shortest_for_conformity_ = std::numeric_limits<double>::infinity();
     bool cells_stale_ = false;  // facets were recovered since cells were last found

@@ -49,6 +49,7 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
             mesh_.relabel_facet(f, flat.faces());
             return round == 0;
         }
+        const std::size_t before = mesh_.vertex_count();
         std::vector<Vec3> taken;
         for (const auto& m : missing) {
             const Vec3 &a = mesh_.point(m.corners[0]), &b = mesh_.point(m.corners[1]), &c = mesh_.point(m.corners[2]);
@@ -65,6 +66,7 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
             else try_insert_on_facet(f, wanted, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
         }
         drain_segments();
+        if (mesh_.vertex_count() == before) give_up(Subface{missing[0].corners, f});
     }
 }
 

@@ -105,7 +105,7 @@ private:
         ConformingMesh mesh = timed(Stage::delaunay, [&] { return start(valid); });
         require_room(options_.limits, mesh.vertex_count(), guard_.stage());
         const bool acute = !valid.acute_features.empty();
-        if (acute) guard_.set_ceiling(200 * mesh.vertex_count() + 50'000);
+        if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 20'000);
         AcuteGeometry acute_geometry(valid);
         BoundaryRefiner boundary(mesh, guard_, options_.seed, acute_geometry);
         const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);
