@@ -18,7 +18,7 @@ constexpr unsigned kSplitRounds = 16;     // on one rung,
 constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing out again, else removals and splits may undo each other for ever
 constexpr double kVertexBudget = 1.5;     // splits may not add more than half the vertices again,
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
-constexpr std::uint64_t kCascadeCeiling = 2, kCascadeAllowance = 1000;  // beyond the budget; more is a cascade beside an acute angle
+constexpr std::uint64_t kCascadeCeiling = 2, kCascadeAllowance = 10000;  // beyond the budget; more is a cascade beside an acute angle
 constexpr unsigned kMostCascades = 16;    // that are undone, one tetrahedron each given up, before a round of splits is
 constexpr unsigned kTriesUntouched = 3;   // failures after which a tetrahedron rests until its neighbourhood changes
 constexpr unsigned kTriesInAll = 4;       // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then

@@ -105,6 +105,15 @@ TEST(AcuteSplits, ConformWithFewVertices) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) EXPECT_LE(vertices_to_conform(bundle(seed, 7)), 600U) << seed;
 }
 
+/// Sixty random complexes in cubes, slabs and needles. Where a split has nowhere to go it must not go into a ball: those chased each other to the last bit.
+TEST(AcuteSplits, RandomComplexesConform) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(seed);
+        const Plc plc = random_complex(seed);
+        EXPECT_LE(vertices_to_conform(plc), 200 * plc.vertices.size());
+    }
+}
+
 /// Where no angle is acute nothing may be exempt; where one is, exempt tetrahedra have two vertices on the boundary, name an acute feature of the input
 /// with its angle, miss a goal, and all others keep the goals.
 TEST(AcuteExemptions, NameWhatForcesThem) {
