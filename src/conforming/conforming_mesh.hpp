@@ -200,6 +200,7 @@ private:
     void collect_interior(const Cavity& cavity, const Placement& where);
     void replace_subfaces(const Cavity& cavity, const Placement& where, FacetId facet);
     void commit(VertexId v, const Cavity& cavity, const Placement& where);
+    void commit_inside(VertexId v, const Cavity& cavity);
     void restore(const Snapshot& snapshot);
     void plan(const Cavity& cavity, const Placement& where);
     bool note_destroyed(const Placement& where);

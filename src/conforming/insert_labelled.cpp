@@ -193,7 +193,22 @@ bool ConformingMesh::would_break(const Cavity& cavity, const Placement& where) {
     return false;
 }
 
+/// Nearly every cavity is inside one cell: nothing is inherited but that.
+void ConformingMesh::commit_inside(VertexId v, const Cavity& cavity) {
+    const CellId cell = cell_[cavity.tets[0].index()];
+    tri_.insert_vertex(v, cavity);
+    fit_arrays();
+    for (const TetId t : tri_.new_tets()) cell_[t.index()] = cell;
+    if (cell == unknown_cell())
+        for (const TetId t : tri_.new_tets()) forget_cell(t);
+}
+
 void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& where) {
+    const auto is_inside = [&](TetId t) { return !has_labels(t) && cell_[t.index()] == cell_[cavity.tets[0].index()]; };
+    if (where.carrier == CarrierKind::region && std::all_of(cavity.tets.begin(), cavity.tets.end(), is_inside)) {
+        commit_inside(v, cavity);
+        return;
+    }
     plan(cavity, where);
     const bool leaks = note_destroyed(where);
     const bool splits = where.carrier == CarrierKind::segment;
