@@ -122,9 +122,15 @@ std::vector<VertexId> ConformingMesh::steiner_vertices_of(SegmentId s) const {
     return out;
 }
 
-SegmentId ConformingMesh::segment_of_edge(VertexId a, VertexId b) {
-    const TetId t = tri_.find_edge(a, b);
-    return t.valid() ? segment_at(t, kEdgeOf[tets().find_corner(t, a)][tets().find_corner(t, b)]) : SegmentId{};
+std::vector<VertexId> ConformingMesh::chain_of(SegmentId s) const {
+    const ValidSegment& segment = plc_->segments[s.index()];
+    const Vec3 &a = point(segment.ends[0]), &b = point(segment.ends[1]);
+    std::vector<std::pair<double, VertexId>> sorted{{-1e300, segment.ends[0]}, {1e300, segment.ends[1]}};
+    for (const VertexId v : steiner_vertices_of(s)) sorted.push_back({dot(point(v) - a, b - a), v});
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<VertexId> out;
+    for (const auto& [along, v] : sorted) out.push_back(v);
+    return out;
 }
 
 // ------------------------------------------------------------------------------------------------ labels

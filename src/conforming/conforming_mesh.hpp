@@ -113,8 +113,8 @@ public:
     /// Steiner vertices on the facet and on its segments, ascending; or on the segment, in order of insertion.
     [[nodiscard]] std::vector<VertexId> steiner_vertices_of(FacetId f) const;
     [[nodiscard]] std::vector<VertexId> steiner_vertices_of(SegmentId s) const;
-    /// The segment that edge ab is labelled with, invalid if none or if there is no such edge.
-    [[nodiscard]] SegmentId segment_of_edge(VertexId a, VertexId b);
+    /// The segment's ends and the Steiner vertices between them, in order.
+    [[nodiscard]] std::vector<VertexId> chain_of(SegmentId s) const;
 
     /// Does a point placed on a facet really lie in one of its subfaces? (Rounding, or an encroached neighbourhood, may put it outside.)
     /// @pre cavity is the last one found.

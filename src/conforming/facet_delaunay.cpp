@@ -19,6 +19,11 @@ void FacetDelaunay::collect_vertices(const ConformingMesh& mesh) {
     const ValidFacet& facet = plc.facets[facet_.index()];
     vertices_ = facet.vertices;
     for (const VertexId v : mesh.steiner_vertices_of(facet_)) vertices_.push_back(v);
+    for (const SegmentId s : facet.segments) {
+        const std::vector<VertexId> chain = mesh.chain_of(s);
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i) subsegments_.push_back({{std::min(chain[i], chain[i + 1]), std::max(chain[i], chain[i + 1])}, s});
+    }
+    std::sort(subsegments_.begin(), subsegments_.end());
     // In a coordinate plane the coordinates themselves are exact, and their lexicographic order, which breaks ties, is the mesh's own.
     const Vec3& n = facet.normal;
     for (const VertexId v : vertices_) {
@@ -34,6 +39,13 @@ void FacetDelaunay::collect_vertices(const ConformingMesh& mesh) {
             flat_.push_back(flush_to_exact_range(Vec3{u, w, 0}));
         }
     }
+}
+
+/// The facet's segment of which ab is a piece, or an invalid one.
+SegmentId FacetDelaunay::segment_between(VertexId a, VertexId b) const {
+    const std::array<VertexId, 2> ends{std::min(a, b), std::max(a, b)};
+    const auto at = std::lower_bound(subsegments_.begin(), subsegments_.end(), ends, [](const auto& s, const auto& e) { return s.first < e; });
+    return at != subsegments_.end() && at->first == ends ? at->second : SegmentId{};
 }
 
 double FacetDelaunay::area2(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
@@ -94,7 +106,7 @@ std::map<SegmentId, FacetDelaunay::InnerSides> FacetDelaunay::inner_sides(const 
 
 /// Drops the triangles outside the facet: components between subsegments, each judged by the sides of the subsegments that it has. Coordinates could
 /// not tell: rounding bends straight outlines inwards, and what closes the hull there is as thin as the rounding.
-void FacetDelaunay::keep_inside(ConformingMesh& mesh) {
+void FacetDelaunay::keep_inside(const ConformingMesh& mesh) {
     const auto sides = inner_sides(mesh);
     double twice_area = 0;
     for (const auto& c : triangles_) twice_area += area2(c[0], c[1], c[2]);
@@ -113,7 +125,7 @@ void FacetDelaunay::keep_inside(ConformingMesh& mesh) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t n = neighbours_[t][k], from = c[(k + 1) % 3], to = c[(k + 2) % 3];
                 if (n != kNone && component[n] == id) continue;
-                const auto side = sides.find(mesh.segment_of_edge(vertices_[from], vertices_[to]));
+                const auto side = sides.find(segment_between(vertices_[from], vertices_[to]));
                 if (side != sides.end()) {
                     const Vec3 edge = flat_[to] - flat_[from];
                     const bool on_left = (dot(edge, side->second.along) > 0) == (twice_area > 0);
@@ -218,7 +230,7 @@ std::vector<FacetDelaunay::Missing> FacetDelaunay::match_faces(ConformingMesh& m
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t n = neighbours_[cluster[i]][k];
                 const auto& c = triangles_[cluster[i]];
-                if (n == kNone || missing[n] != 1 || mesh.segment_of_edge(vertices_[c[(k + 1) % 3]], vertices_[c[(k + 2) % 3]]).valid()) continue;
+                if (n == kNone || missing[n] != 1 || segment_between(vertices_[c[(k + 1) % 3]], vertices_[c[(k + 2) % 3]]).valid()) continue;
                 missing[n] = 2;
                 cluster.push_back(n);
             }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
@@ -18,7 +19,7 @@ public:
         std::array<VertexId, 3> corners{};
     };
 
-    /// @pre the facet's segments are chains of labelled edges: match_faces() tells inside from outside by them.
+    /// @pre the facet's segments are chains of edges of the mesh: match_faces() tells inside from outside by them.
     FacetDelaunay(const ConformingMesh& mesh, FacetId f);
 
     /// Compares with the mesh. @return triangles that are covered by no faces of the mesh, largest first.
@@ -34,13 +35,15 @@ private:
     };
     void collect_vertices(const ConformingMesh& mesh);
     void triangulate();
-    void keep_inside(ConformingMesh& mesh);
+    void keep_inside(const ConformingMesh& mesh);
+    [[nodiscard]] SegmentId segment_between(VertexId a, VertexId b) const;
     [[nodiscard]] std::map<SegmentId, InnerSides> inner_sides(const ConformingMesh& mesh) const;
     bool cover(ConformingMesh& mesh, const std::vector<std::size_t>& cluster, std::vector<TetFace>& faces) const;
     [[nodiscard]] double area2(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
 
     FacetId facet_;
     std::vector<VertexId> vertices_;
+    std::vector<std::pair<std::array<VertexId, 2>, SegmentId>> subsegments_;  // ends ascending; sorted
     std::vector<Vec3> flat_;  // (u, v, 0)
     std::vector<Triangle> triangles_;
     std::vector<std::array<std::uint32_t, 3>> neighbours_;  // of each triangle, opposite its corners

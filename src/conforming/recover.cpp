@@ -18,13 +18,9 @@
 namespace wellmesh {
 
 void BoundaryRefiner::queue_chain(SegmentId s) {
-    const ValidSegment& segment = mesh_.plc().segments[s.index()];
-    const Vec3 &a = mesh_.point(segment.ends[0]), &b = mesh_.point(segment.ends[1]);
-    std::vector<std::pair<double, VertexId>> chain{{-1e300, segment.ends[0]}, {1e300, segment.ends[1]}};
-    for (const VertexId v : mesh_.steiner_vertices_of(s)) chain.push_back({dot(mesh_.point(v) - a, b - a), v});
-    std::sort(chain.begin(), chain.end());
+    const std::vector<VertexId> chain = mesh_.chain_of(s);
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
-        const Subsegment piece{chain[i].second, chain[i + 1].second, s};
+        const Subsegment piece{chain[i], chain[i + 1], s};
         if (!mesh_.find_subsegment(piece).valid()) segments_.push_back({piece, VertexId{}});
     }
 }

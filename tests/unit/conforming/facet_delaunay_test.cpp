@@ -60,18 +60,12 @@ double area_of(const ConformingMesh& mesh, const std::vector<TetFace>& faces) {
     return area;
 }
 
-/// As recovery leaves the segments, where they are edges already.
-void label_segments(StagedMesh& staged) {
-    for (std::size_t s = 0; s < staged.plc.segments.size(); ++s) staged.mesh.label_edge(staged.plc.segments[s].ends[0], staged.plc.segments[s].ends[1], SegmentId{s});
-}
-
 TEST(FacetDelaunay, LatticeInACoordinatePlaneNeedsNoPoint) {
     for (const unsigned n : {2U, 3U, 5U, 8U}) {
         SCOPED_TRACE(n);
         StagedMesh staged(box_with_lattice(n));
         const FacetId top = facet_with_most_vertices(staged.plc);
         ASSERT_EQ(staged.plc.facets[top.index()].vertices.size(), (n + 1) * (n + 1));
-        label_segments(staged);
         FacetDelaunay flat(staged.mesh, top);
         EXPECT_TRUE(flat.match_faces(staged.mesh).empty());
         EXPECT_EQ(flat.faces().size(), 2 * n * n);
@@ -130,7 +124,6 @@ TEST(FacetDelaunay, NamesTrianglesThatTheMeshLacks) {
     StagedMesh staged(plc);
     const FacetId inner{6};
     ASSERT_EQ(staged.plc.facets[6].vertices.size(), 4U);
-    label_segments(staged);
     FacetDelaunay flat(staged.mesh, inner);
     EXPECT_FALSE(flat.match_faces(staged.mesh).empty());
     staged.conform();
