@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Instructions of fixed workloads, counted by callgrind, beside the numbers of instructions.json. Times vary with load, these don't.
 
-    benchmarks/instructions.py [--program build/dev/bin/wellmesh] [--update] [--tolerance 5]
+    benchmarks/instructions.py [--program build/release/bin/wellmesh] [--update] [--tolerance 5]
 
 Exit status 1 if a count is above the committed one by more than the tolerance, or a workload can't be run; 0 otherwise, also where valgrind isn't there or the program
 was made by another compiler than the file's: then nothing can be compared, and that is said.
@@ -17,10 +17,9 @@ import shutil
 import sys
 import tempfile
 
-from common import HERE, run
+from common import DEFAULT_PROGRAM, HERE, run
 
 TABLE = os.path.join(HERE, "instructions.json")
-DEFAULT_PROGRAM = os.path.normpath(os.path.join(HERE, "..", "build", "dev", "bin", "wellmesh"))
 CUBE = """8 3 0 0
 1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1
 6 0
@@ -81,7 +80,7 @@ def main():
     if not math.isfinite(arguments.tolerance) or not 0 < arguments.tolerance <= 100:
         parser.error("--tolerance is above 0 and at most 100")
     if not os.path.exists(arguments.program):
-        parser.error(f"no program {arguments.program}: build the preset dev, or name one by --program")
+        parser.error(f"no program {arguments.program}: build the preset release, or name one by --program")
     if not shutil.which("valgrind"):
         print("instructions.py: SKIPPED: there is no valgrind (Debian: apt install valgrind)")
         return 0
