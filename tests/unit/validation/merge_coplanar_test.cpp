@@ -2,12 +2,10 @@
 // Which triangles become one facet: rounding may be forgiven, shape may not.
 #include "plc_helpers.hpp"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "core/rng.hpp"
-#include "wellmesh/repair.hpp"
 
 namespace wellmesh::testing {
 namespace {
@@ -109,29 +107,6 @@ TEST(MergeCoplanar, CurvedSurfacesKeepTheirShapeHoweverFine) {
             EXPECT_LT(fewest, 1000U);  // the bound was put to the test
         }
     }
-}
-
-/// A vertex inside the top of a box, off it and beyond its front edge by less than the tolerance: in the plane of the top it lies outside, and the needle
-/// between it and the edge is turned over. No mesh has both within that tolerance; the needle has to be named.
-TEST(MergeCoplanar, NeedleTurnedOverByRoundingIsNamed) {
-    Plc plc = surface();
-    plc.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.5, -1e-4, 1 + 5e-4}};
-    for (const auto& t : std::vector<std::array<std::uint32_t, 3>>{{0, 2, 1}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7},
-                                                                    {4, 5, 8}, {8, 5, 6}, {8, 6, 7}, {8, 7, 4}}) {
-        PlcFacet f;
-        f.polygons = {{t[0], t[1], t[2]}};
-        plc.facets.push_back(std::move(f));
-    }
-    EXPECT_FALSE(diagnose(plc).has_errors());
-    MeshOptions tolerant;
-    tolerant.coplanar_tolerance = 1e-3;
-    const Diagnosis d = diagnose(plc, tolerant);
-    ASSERT_TRUE(d.has_errors());
-    const Defect& defect = d.defects.front();
-    EXPECT_EQ(defect.kind, DefectKind::feature_too_thin);
-    EXPECT_NEAR(defect.value, 5.1e-4, 1e-5);
-    EXPECT_NE(defect.message.find("vertex"), std::string::npos);
-    EXPECT_FALSE(diagnose(repair(plc, {.tolerance = 6e-4}).plc, tolerant).has_errors());
 }
 
 }  // namespace
