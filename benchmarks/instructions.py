@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Instructions of fixed workloads, counted by callgrind, beside the numbers of instructions.json. Times vary with load, these don't.
 
-    benchmarks/instructions.py [--program build/release/bin/wellmesh] [--update] [--tolerance 5]
+    benchmarks/instructions.py [--program build/dev/bin/wellmesh] [--update] [--tolerance 5]
 
 Exit status 1 if a count is above the committed one by more than the tolerance, or a workload can't be run; 0 otherwise, also where valgrind isn't there or the program
 was made by another compiler than the file's: then nothing can be compared, and that is said.
@@ -17,7 +17,7 @@ import shutil
 import sys
 import tempfile
 
-from common import DEFAULT_PROGRAM, HERE, run
+from common import HERE, run
 
 TABLE = os.path.join(HERE, "instructions.json")
 CUBE = """8 3 0 0
@@ -72,7 +72,7 @@ def count(program, arguments, function, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=DEFAULT_PROGRAM)
+    parser.add_argument("--program", default=os.path.join(os.path.dirname(HERE), "build", "dev", "bin", "wellmesh"))
     parser.add_argument("--table", default=TABLE, help="the committed numbers")
     parser.add_argument("--tolerance", type=float, default=5, help="per cent")
     parser.add_argument("--update", action="store_true", help="write the numbers instead of comparing them")
@@ -80,7 +80,7 @@ def main():
     if not math.isfinite(arguments.tolerance) or not 0 < arguments.tolerance <= 100:
         parser.error("--tolerance is above 0 and at most 100")
     if not os.path.exists(arguments.program):
-        parser.error(f"no program {arguments.program}: build the preset release, or name one by --program")
+        parser.error(f"no program {arguments.program}: build the preset dev, or name one by --program")
     if not shutil.which("valgrind"):
         print("instructions.py: SKIPPED: there is no valgrind (Debian: apt install valgrind)")
         return 0
