@@ -17,6 +17,7 @@ namespace {
 /// About acute angles refinement leaves only what is directly forced until it has made so many vertices, then all that touches an acute feature.
 constexpr double kGenerousGrowth = 3;
 constexpr std::size_t kGenerousAllowance = 500;
+constexpr unsigned kMostCascades = 16;
 
 SizeFieldDomain sampled_domain(const ConformingMesh& mesh, RunGuard& guard, const Limits& limits) {
     const auto cell_at = [&mesh, near = TetId{}](const Vec3& p) mutable {
@@ -131,15 +132,22 @@ RunGuard::Verdict Refiner::refine() {
     enqueue_all();
     keeps_last_ = max_vertices_.has_value() || boundary_.acute().any();
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
-    try {
-        verdict = drain();
-    } catch (const MeshError& e) {
-        // A cascade at acute input that met the ceiling: the mesh before it is as good as any.
-        if (e.code() != ErrorCode::budget_exhausted || !last_) throw;
-        mesh_ = std::move(*last_);
-        forget_waiting();
-        verdict = RunGuard::Verdict::out_of_vertices;
+    for (unsigned cascades = 0;; ++cascades) {
+        try {
+            verdict = drain();
+            break;
+        } catch (const MeshError& e) {
+            // A cascade at acute input that met the ceiling, or what can't be split any further: without what set it off, once more from the mesh before it.
+            if (e.code() != ErrorCode::budget_exhausted || !last_) throw;
+            mesh_ = *last_;
+            forget_waiting();
+            if (cascades == kMostCascades) break;
+            given_up_.insert(splitting_);
+            enqueue_all();
+        }
     }
+    // The algorithm's own ceiling ends refinement, not the run.
+    if (verdict == RunGuard::Verdict::out_of_vertices && !guard_.user_limit_spent()) verdict = RunGuard::Verdict::go_on;
     keeps_last_ = false;
     if (last_ && guard_.has_too_many(mesh_.vertex_count())) mesh_ = std::move(*last_);
     last_.reset();
@@ -191,7 +199,8 @@ RunGuard::Verdict Refiner::drain() {
         if (!mesh_.in_domain(e.tet)) continue;
         double badness = 0;
         const Fault fault = classify(e.tet, badness);
-        if (fault == Fault::none || is_forced(e.tet, fault)) continue;
+        if (fault == Fault::none || is_forced(e.tet, fault) || given_up_.contains(e.fingerprint)) continue;
+        splitting_ = e.fingerprint;
         const std::size_t vertices_before = mesh_.vertex_count();
         if (fault == Fault::flat) split_flat(e.tet);
         else process(e.tet, fault == Fault::size ? InsertionReason::size : fault == Fault::sliver ? InsertionReason::sliver : InsertionReason::radius_edge);

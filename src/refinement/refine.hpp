@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <unordered_set>
 #include <vector>
 
 #include "conforming/acute_exemptions.hpp"
@@ -111,6 +112,8 @@ private:
     double squared_size_slack_ = 1;
     unsigned candidates_ = 1;
     bool judging_ = false;
+    std::uint32_t splitting_ = 0;                 // the tetrahedron at hand, by its fingerprint
+    std::unordered_set<std::uint32_t> given_up_;  // what set off a cascade
     BadTetQueue by_size_, by_radius_edge_, by_sliver_;
     RefineStatistics statistics_;
     Cavity cavity_;
