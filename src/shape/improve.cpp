@@ -23,8 +23,6 @@ constexpr unsigned kMostCascades = 16;    // that are undone, one tetrahedron ea
 constexpr unsigned kTriesUntouched = 3;   // failures after which a tetrahedron rests until its neighbourhood changes
 constexpr unsigned kTriesInAll = 4;       // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 constexpr unsigned kLastTries = 3;
-constexpr std::size_t kMostRescued = 200;  // chains of changes about one tetrahedron cost as much as moves about a hundred
-constexpr unsigned kShoves = 8;
 constexpr double kRungDeg = 5;
 constexpr double kFirstRungDeg = 30;      // of moves alone, which mostly reach it, and do so better straight away than from rung to rung
 constexpr double kStraightDeg = 35;       // goals up to this are mostly reached, and are aimed at straight away
@@ -341,34 +339,6 @@ RunGuard::Verdict ShapeImprover::perturb(double angle_deg) {
     return verdict;
 }
 
-/// Chains of changes about the corners of each of the few that are left.
-RunGuard::Verdict ShapeImprover::rescue() {
-    std::unordered_map<std::uint64_t, double> known;  // may stay as bad as they are
-    for (const Bad& b : left_) known[key_of(b.corners)] = b.badness;
-    std::uint64_t target = 0;
-    chains_.tolerates = [&](TetId t) {
-        if (mover_.excuses && mover_.excuses(t)) return true;
-        const std::uint64_t key = key_of(mesh_.tets().corners(t));
-        const auto old = known.find(key);
-        return key != target && old != known.end() && badness_of(t) <= old->second;
-    };
-    mover_.move_beside_excused(true);
-    RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
-    std::sort(left_.begin(), left_.end());
-    for (std::size_t i = 0; i < std::min(left_.size(), kMostRescued) && verdict == RunGuard::Verdict::go_on; ++i) {
-        target = key_of(left_[i].corners);
-        for (const VertexId v : freest_first(mesh_, left_[i].corners)) {
-            verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), left_.size() - i);
-            if (verdict != RunGuard::Verdict::go_on || !find_tet(mesh_, left_[i].corners).valid()) break;
-            if (mesh_.info(v).carrier != CarrierKind::input_vertex && (chains_.shove(v, kShoves) || chains_.dissolve(v))) break;
-        }
-    }
-    mover_.move_beside_excused(false);
-    chains_.tolerates = {};
-    collect_bad();
-    return verdict;
-}
-
 /// What no rung mended beside an acute angle, with more of its surroundings moved, and then split.
 RunGuard::Verdict ShapeImprover::try_afresh() {
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
@@ -409,20 +379,6 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices_at_start, reached);
     if (refiner_.knows_forced() && verdict == RunGuard::Verdict::go_on) verdict = try_afresh();
     if (!left_.empty() && verdict == RunGuard::Verdict::go_on) verdict = rescue();
-    return verdict;
-}
-
-/// Takes superfluous vertices out. What excuses a tetrahedron beside an acute angle may have been one of them.
-RunGuard::Verdict ShapeImprover::thin_out(std::size_t first_new, std::size_t enough) {
-    if (!refiner_.knows_forced()) return thinning_.run(first_new, enough);
-    if (!guard_.can_double()) return RunGuard::Verdict::go_on;
-    ConformingMesh last = mesh_;
-    RunGuard::Verdict verdict = thinning_.run(first_new, enough);
-    collect_bad();
-    if (!left_.empty() && verdict == RunGuard::Verdict::go_on) verdict = rescue();
-    if (left_.empty()) return verdict;
-    mesh_ = std::move(last);
-    collect_bad();
     return verdict;
 }
 
