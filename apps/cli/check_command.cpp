@@ -65,6 +65,7 @@ void add_check_command(CLI::App& program, Command& selected) {
     command.add_option("--exempt", arguments->exempt, "tetrahedra that need not keep the bounds on shape, a number from 1 a line: what --exemptions wrote (default: none)")
         ->type_name("FILE");
     add_certify_flags(command, arguments->options);
+    add_threads_flag(command, arguments->options.threads);
     add_json_flag(command, arguments->json);
     command.add_flag("--quiet", arguments->quiet, "no report; the exit status says it: 0 no claim refuted, 1 otherwise");
     command.callback([&selected, arguments] { selected = [arguments](Interrupt& interrupt) { return run(*arguments, interrupt); }; });

@@ -220,6 +220,18 @@ void add_seed_flag(CLI::App& command, MeshOptions& options) {
         ->type_name("N")->default_str(fmt::format("{}", options.seed));
 }
 
+void add_threads_flag(CLI::App& command, unsigned& threads) {
+    command.add_option_function<std::string>(
+        "--threads",
+        [&threads](const std::string& text) {
+            const std::uint64_t n = read_count(text, "--threads");
+            if (n > kMostThreads) throw CLI::ValidationError("--threads", fmt::format("{} is more than {}", n, kMostThreads));
+            threads = static_cast<unsigned>(n);
+        },
+        "threads at work; 0: one for each core. The output is the same for any number")
+        ->type_name("N")->default_str(fmt::format("{}", threads));
+}
+
 void add_limit_flags(CLI::App& command, MeshOptions& options) {
     add_coplanar_tolerance_flag(command, options);
     command.add_option_function<std::string>(
@@ -259,6 +271,7 @@ void add_mesh_flags(CLI::App& command, MeshOptions& options) {
     add_seeding_flag(command, options);
     add_paper_flags(command, options, goals.radius_edge, goals.dihedral);
     add_seed_flag(command, options);
+    add_threads_flag(command, options.threads);
     add_limit_flags(command, options);
 }
 

@@ -26,6 +26,7 @@ struct GoalFlags {
 /// Size and shape.
 GoalFlags add_goal_flags(CLI::App& command, MeshOptions& options);
 void add_seed_flag(CLI::App& command, MeshOptions& options);
+void add_threads_flag(CLI::App& command, unsigned& threads);  ///< --threads
 void add_seeding_flag(CLI::App& command, MeshOptions& options);
 /// Coplanar tolerance, time and vertices.
 void add_limit_flags(CLI::App& command, MeshOptions& options);

@@ -22,6 +22,7 @@ void add_improve_command(CLI::App& program, Command& selected) {
     command.add_option("--plc", job->inputs[1], "the domain that the mesh fills: .poly .smesh .off .stl .obj .ply .mesh .msh .vtp .vtu")->required()->type_name("FILE");
     add_goal_flags(command, job->options);
     add_seed_flag(command, job->options);
+    add_threads_flag(command, job->options.threads);
     add_limit_flags(command, job->options);
     add_background_flag(command, *job);
     add_job_flags(command, *job);

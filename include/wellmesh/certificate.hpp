@@ -71,6 +71,7 @@ struct CertifyOptions {
     double flat_angle_rad = 1e-6;   ///< two constraint triangles that bend less than this make no segment
     /// Tetrahedra, numbers from 0, ascending, for which no bound on shape holds. Each must have two vertices on constraint triangles or listed subsegments.
     std::vector<std::uint64_t> exempt{};
+    unsigned threads = 0;           ///< at work, the caller's among them; 0: as many as the machine has cores. Never changes the certificate
     std::stop_token stop{};         ///< polled between claims: the ones not reached stay `not_checked`
 };
 

@@ -112,6 +112,8 @@ struct Limits {
 /// Vertices from a body-centred cubic lattice inside, where a size is asked for: about a third fewer for the same size.
 enum class Seeding : std::uint8_t { automatic, off };
 
+inline constexpr unsigned kMostThreads = 1024;  ///< beyond any machine's cores: more could only be a slip
+
 struct MeshOptions {
     Mode mode = Mode::practical;
     PaperConstants paper{};
@@ -124,6 +126,8 @@ struct MeshOptions {
     std::optional<double> coplanar_tolerance{};
     /// Input, options and seed fix the output bytes (time limits and cancellation apart).
     std::uint64_t seed = 0;
+    /// Threads at work, the caller's among them; 0: as many as the machine has cores. Never changes the output. Callbacks come on the caller's thread.
+    unsigned threads = 0;
     /// Keep account of the refinement's insertions and report the paper's claims on them. Always so in certified mode, where a violated
     /// claim is an internal error; in practical mode violations are counted.
     bool invariants = false;

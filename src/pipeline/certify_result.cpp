@@ -25,6 +25,7 @@ CertifyOptions certificate_bounds(MeshResult& result, const MeshOptions& options
     bounds.min_dihedral_boundary_deg = options.quality.min_dihedral_boundary_deg;
     bounds.max_volume = options.size.max_volume;
     bounds.stop = stop;
+    bounds.threads = options.threads;
     for (const Exemption& e : result.exemptions) bounds.exempt.push_back(e.tet);
     if (const double sigma0 = paper_constants(options).sigma0; sigma0 > 0) bounds.min_sigma = sigma0;
     bounds.min_sigma_boundary = options.paper.sigma0_boundary;
