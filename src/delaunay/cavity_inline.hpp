@@ -4,8 +4,8 @@
 
 namespace wellmesh {
 
-template <class Accept>
-bool Triangulation::grow_conflict_cavity(const Vec3& p, TetId seed, Cavity& cavity, const Accept& accept) {
+template <bool kZoned, class Accept>
+bool Triangulation::grow_cavity(const Vec3& p, TetId seed, Cavity& cavity, const Accept& accept) {
     cavity.point = p;
     cavity.tets.clear();
     cavity.boundary.clear();
@@ -24,10 +24,16 @@ bool Triangulation::grow_conflict_cavity(const Vec3& p, TetId seed, Cavity& cavi
         for (unsigned f = 0; f < 4; ++f) {
             const TetFace outside = neighbours[f];
             const TetId n = outside.tet();
+            if constexpr (kZoned) {  // another worker may be writing to what is not ours
+                if (!is_mine(n)) return false;
+            }
             std::uint32_t& mark = marks[n.index()];
             if (mark == taken) continue;
             if (mark != kept) {
                 const TetStore::Corners& c = tets_.corners(n);
+                if constexpr (kZoned) {
+                    if (c[3] == kInfiniteVertex && !is_mine(tets_.across(n, 3).tet())) return false;
+                }
                 const bool conflict = c[3] == kInfiniteVertex
                                           ? ghost_in_conflict(n, p)
                                           : filter_.insphere_perturbed_padded(vertices[c[0].index()].point, vertices[c[1].index()].point,
