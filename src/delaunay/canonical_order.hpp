@@ -66,6 +66,8 @@ void visit_in_canonical_order(const TetStore& tets, std::size_t vertices, Worker
             const std::uint32_t first = v == 0 ? 0 : start[v - 1];
             mine.clear();
             for (std::uint32_t i = first; i < start[v]; ++i) {
+                constexpr std::uint32_t kAhead = 24;
+                if (i + kAhead < total) tets.prefetch(dealt[i + kAhead]);
                 const TetStore::Corners c = canonical_corners(tets.corners(dealt[i]));
                 const Entry e{std::uint64_t{c[1].value()} << 32 | c[2].value(), c[3], dealt[i]};
                 mine.push_back(e);
