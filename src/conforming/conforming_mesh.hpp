@@ -145,9 +145,8 @@ public:
 
     /// Inserts cavity.point and notes its insertion length. Labels and cells follow; constraints that the point destroys without lying on them are noted as broken.
     VertexId insert(const Cavity& cavity, const Placement& where, const VertexInfo& info);
-    /// Adds vertices inside cells, as many as can go in without touching a tetrahedron at the boundary, on all workers. All get numbers, in their order;
-    /// those that did not go in are not inserted, insert_known() may still do it. Which ones these are, and the ids of tetrahedra, depends on the number of
-    /// workers; the tetrahedra once all are in do not. Insertion lengths are not noted.
+    /// Adds vertices inside cells, all that encroach upon nothing, on all workers. All get numbers, in their order;
+    /// those that did not go in are not inserted, insert_known() may still do it. Ids of tetrahedra depend on the number of workers. Insertion lengths are not noted.
     /// @param points  in biased_spatial_order(), none of them a vertex's  @param is_welcome  may there be a vertex in this cell? From any thread.
     /// @param may_go_on  asked now and then, from any thread
     /// @return the vertices that are not in
@@ -209,7 +208,8 @@ private:
         FacetId facet{};
     };
 
-    void capture(const Cavity& cavity);
+    void capture(const Cavity& cavity, std::vector<CapturedFace>& captured) const;
+    [[nodiscard]] bool is_encroached_at(TetId t, const Vec3& p) const;
     void collect_interior(const Cavity& cavity, const Placement& where);
     void replace_subfaces(const Cavity& cavity, const Placement& where, FacetId facet);
     void commit(VertexId v, const Cavity& cavity, const Placement& where);

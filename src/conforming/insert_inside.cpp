@@ -2,38 +2,115 @@
 // Bulk insertion inside cells, and numbering afterwards.
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "conforming/conforming_mesh.hpp"
 
 namespace wellmesh {
 
-/// A cavity without labels is inside one cell, and no subface or subsegment is encroached by its point: the tetrahedra at one that is would be in it.
+/// Points that encroach nothing destroy no subface or subsegment: labels on the cavity's boundary are inherited, and that is all.
 class ConformingMesh::InsideObserver : public BulkObserver {
 public:
     InsideObserver(ConformingMesh& mesh, const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on)
         : mesh_(mesh), is_welcome_(is_welcome), may_go_on_(may_go_on) {}
+
     void make_room(std::size_t) override { mesh_.fit_arrays(); }
+    /// Each zone has records of its own, as many more as there are now.
+    void split(std::size_t zones) override {
+        const std::size_t share = mesh_.records_.size() / zones + kSpareRecords;
+        std::vector<std::uint32_t>& free = mesh_.free_records_;
+        parts_.clear();
+        for (std::size_t z = 0; z < zones; ++z) parts_.emplace_back(mesh_, is_welcome_, may_go_on_);
+        for (InsideObserver& part : parts_) {
+            part.is_part_ = true;
+            for (std::size_t k = 0; k < share; ++k) {
+                if (free.empty()) {
+                    free.push_back(static_cast<std::uint32_t>(mesh_.records_.size()));
+                    mesh_.records_.emplace_back();
+                }
+                part.records_.push_back(free.back());
+                free.pop_back();
+            }
+        }
+    }
+    BulkObserver& for_zone(std::size_t zone) override { return parts_[zone]; }
+    void join() override {
+        for (const InsideObserver& part : parts_) mesh_.free_records_.insert(mesh_.free_records_.end(), part.records_.begin(), part.records_.end());
+        parts_.clear();
+    }
+
     bool welcomes(const Vec3& p, TetId holder) override {
         return !mesh_.tets().is_ghost(holder) && mesh_.in_domain(holder) && is_welcome_(p, mesh_.cell(holder));
     }
-    std::uint32_t prepare(const Cavity& cavity) override {
-        if (std::any_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId t) { return mesh_.has_labels(t); })) return kRefused;
-        return mesh_.cell(cavity.tets[0]).value();
+    bool prepare(const Cavity& cavity) override {
+        std::size_t dropped = 0;
+        for (const TetId t : cavity.tets) {
+            if (!mesh_.has_labels(t)) continue;
+            ++dropped;
+            if (mesh_.is_encroached_at(t, cavity.point)) return false;
+        }
+        if (is_part_ && records_.size() + dropped < cavity.boundary.size()) return false;
+        mesh_.capture(cavity, captured_);
+        for (const TetId t : cavity.tets) {
+            std::uint32_t& r = mesh_.record_[t.index()];
+            if (r != 0) pool().push_back(std::exchange(r, 0));
+        }
+        return true;
     }
-    void made(VertexId v, const std::vector<TetId>& tets, std::uint32_t cell) override {
-        mesh_.info_[v.index()].carrier_id = cell;
-        for (const TetId t : tets) {
-            mesh_.cell_[t.index()] = CellId{cell};
+    void made(VertexId v, const std::vector<TetId>& tets) override {
+        mesh_.info_[v.index()].carrier_id = captured_[0].cell.value();
+        for (std::size_t i = 0; i < tets.size(); ++i) {
+            const TetId t = tets[i];
+            const CapturedFace& c = captured_[i];
+            mesh_.cell_[t.index()] = c.cell;
             mesh_.record_[t.index()] = 0;
+            if (!c.facet.valid() && !c.segments[0].valid() && !c.segments[1].valid() && !c.segments[2].valid()) continue;
+            const TetStore& store = mesh_.tets();
+            TetLabels labels;
+            labels.facets[store.find_corner(t, v)] = c.facet;
+            for (std::size_t k = 0; k < 3; ++k)
+                labels.segments[kEdgeOf[store.find_corner(t, c.corners[(k + 1) % 3])][store.find_corner(t, c.corners[(k + 2) % 3])]] = c.segments[k];
+            put(t, labels);
         }
     }
     bool may_go_on() override { return may_go_on_(); }
 
 private:
+    static constexpr std::size_t kSpareRecords = 1024;
+
+    std::vector<std::uint32_t>& pool() { return is_part_ ? records_ : mesh_.free_records_; }
+    void put(TetId t, const TetLabels& labels) {
+        if (pool().empty()) {  // of the whole: a part's were counted
+            pool().push_back(static_cast<std::uint32_t>(mesh_.records_.size()));
+            mesh_.records_.emplace_back();
+        }
+        mesh_.record_[t.index()] = pool().back();
+        mesh_.records_[pool().back()] = labels;
+        pool().pop_back();
+    }
+
     ConformingMesh& mesh_;
     const std::function<bool(const Vec3&, CellId)>& is_welcome_;
     const std::function<bool()>& may_go_on_;
+    bool is_part_ = false;
+    std::vector<std::uint32_t> records_;
+    std::vector<CapturedFace> captured_;
+    std::vector<InsideObserver> parts_;
 };
+
+/// Does p encroach upon a subface or subsegment of this tetrahedron's? @pre it has labels
+bool ConformingMesh::is_encroached_at(TetId t, const Vec3& p) const {
+    const TetLabels& l = labels(t);
+    const TetStore::Corners& c = tets().corners(t);
+    for (unsigned e = 0; e < 6; ++e)
+        if (l.segments[e].valid() && side_of_diametral_sphere(point(c[kEdgeCorners[e][0]]), point(c[kEdgeCorners[e][1]]), p) == Sign::positive) return true;
+    for (unsigned f = 0; f < 4; ++f) {
+        if (!l.facets[f].valid()) continue;
+        const auto& k = kFaceCorners[f];
+        if (side_of_equatorial_sphere(point(c[k[0]]), point(c[k[1]]), point(c[k[2]]), p) == Sign::positive) return true;
+    }
+    return false;
+}
 
 std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<const Vec3> points, InsertionReason reason,
                                                     const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on) {

@@ -132,13 +132,12 @@ void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId s
             left.push_back(i);
             continue;
         }
-        const std::uint32_t prepared = observer ? observer->prepare(cavity) : 0;
-        if (prepared == BulkObserver::kRefused) {
+        if (observer && !observer->prepare(cavity)) {
             left.push_back(i);
             continue;
         }
         insert_vertex(v, cavity);
-        if (observer) observer->made(v, new_tets_, prepared);
+        if (observer) observer->made(v, new_tets_);
     }
 }
 
@@ -165,15 +164,14 @@ std::vector<std::uint32_t> Triangulation::insert_one_by_one(std::span<const std:
             duplicates_.push_back({v, cavity.duplicate});
             continue;
         }
-        const std::uint32_t prepared = observer ? observer->prepare(cavity) : 0;
-        if (prepared == BulkObserver::kRefused) {
+        if (observer && !observer->prepare(cavity)) {
             left.push_back(order[k]);
             continue;
         }
         insert_vertex(v, cavity);
         if (observer) {
             observer->make_room(tets_.slots());
-            observer->made(v, new_tets_, prepared);
+            observer->made(v, new_tets_);
         }
         near = last_located_;
     }
@@ -210,7 +208,10 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
         epoch_ = 0;
     }
     mark_.resize(std::max(mark_.size(), tets_.slots()), 0);
-    if (observer) observer->make_room(tets_.slots());
+    if (observer) {
+        observer->make_room(tets_.slots());
+        observer->split(zones);
+    }
 
     SharedArray<std::uint8_t> zone_of_vertex, zone_of_tet;
     zone_of_vertex.resize_as_is(vertices_.size());
@@ -240,11 +241,13 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
     workers.for_each(zones, [&](std::size_t z) {
         for (const TetId t : team[z].slots) zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
         Triangulation view = view_of_zone(static_cast<std::uint8_t>(z), zone_of_tet.data(), std::move(team[z].slots));
-        view.insert_in_zone(team[z].order, team[z].seed, observer, team[z].left);
+        view.insert_in_zone(team[z].order, team[z].seed, observer ? &observer->for_zone(z) : nullptr, team[z].left);
         team[z].epoch = view.epoch_;
         team[z].duplicates = std::move(view.duplicates_);
         team[z].store = std::move(view.tets_);
     });
+
+    if (observer) observer->join();
 
     std::vector<std::uint32_t> left;
     for (const Zone& z : team) {

@@ -158,9 +158,12 @@ class CheckpointPasser : public BulkObserver {
 public:
     explicit CheckpointPasser(const Checkpoint& checkpoint) : checkpoint_(checkpoint) {}
     void make_room(std::size_t) override {}
+    void split(std::size_t) override {}
+    BulkObserver& for_zone(std::size_t) override { return *this; }
+    void join() override {}
     bool welcomes(const Vec3&, TetId) override { return true; }
-    std::uint32_t prepare(const Cavity&) override { return 0; }
-    void made(VertexId, const std::vector<TetId>&, std::uint32_t) override {}
+    bool prepare(const Cavity&) override { return true; }
+    void made(VertexId, const std::vector<TetId>&) override {}
     bool may_go_on() override {
         pass(checkpoint_);
         return true;

@@ -51,18 +51,23 @@ struct Hole {
     static constexpr std::uint32_t kBoundaryBit = 0x80000000U;
 };
 
-/// Takes part in bulk insertion. prepare() and made() come from several threads at once, each for tetrahedra that no other one touches meanwhile.
+/// Takes part in bulk insertion.
 class BulkObserver {
 public:
     virtual ~BulkObserver() = default;
-    /// There are to be this many slots for tetrahedra. Called by one thread, while no other is at work.
+    /// There are this many slots for tetrahedra from now on.
     virtual void make_room(std::size_t slots) = 0;
+    /// From now until join() the observers for_zone(0), ... for_zone(zones - 1) are asked instead, from several threads at once, each about vertices and
+    /// tetrahedra that no other one touches meanwhile.
+    virtual void split(std::size_t zones) = 0;
+    virtual BulkObserver& for_zone(std::size_t zone) = 0;
+    virtual void join() = 0;
     /// Is a vertex at p welcome, which this tetrahedron holds, or beyond this ghost's face? Asked before its cavity is known.
     virtual bool welcomes(const Vec3& p, TetId holder) = 0;
-    static constexpr std::uint32_t kRefused = 0xffffffffU;
-    /// May the point of this cavity become a vertex? kRefused, or what made() is to be told.
-    virtual std::uint32_t prepare(const Cavity& cavity) = 0;
-    virtual void made(VertexId v, const std::vector<TetId>& tets, std::uint32_t prepared) = 0;
+    /// Called just before the point of the cavity becomes a vertex; false: it must not.
+    virtual bool prepare(const Cavity& cavity) = 0;
+    /// ... and just after. Tetrahedron i stands on face i of the cavity's boundary.
+    virtual void made(VertexId v, const std::vector<TetId>& tets) = 0;
     /// Asked now and then; once it has said no to one thread it says so to all.
     virtual bool may_go_on() = 0;
 };
