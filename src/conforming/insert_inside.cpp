@@ -42,20 +42,20 @@ public:
     bool welcomes(const Vec3& p, TetId holder) override {
         return !mesh_.tets().is_ghost(holder) && mesh_.in_domain(holder) && is_welcome_(p, mesh_.cell(holder));
     }
-    bool prepare(const Cavity& cavity) override {
+    Answer prepare(const Cavity& cavity) override {
         std::size_t dropped = 0;
         for (const TetId t : cavity.tets) {
             if (!mesh_.has_labels(t)) continue;
             ++dropped;
-            if (mesh_.is_encroached_at(t, cavity.point)) return false;
+            if (mesh_.is_encroached_at(t, cavity.point)) return Answer::never;
         }
-        if (is_part_ && records_.size() + dropped < cavity.boundary.size()) return false;
+        if (is_part_ && records_.size() + dropped < cavity.boundary.size()) return Answer::not_now;
         mesh_.capture(cavity, captured_);
         for (const TetId t : cavity.tets) {
             std::uint32_t& r = mesh_.record_[t.index()];
             if (r != 0) pool().push_back(std::exchange(r, 0));
         }
-        return true;
+        return Answer::yes;
     }
     void made(VertexId v, const std::vector<TetId>& tets) override {
         mesh_.info_[v.index()].carrier_id = captured_[0].cell.value();
@@ -144,25 +144,23 @@ void ConformingMesh::renumber_tets(Workers& workers) {
     const std::vector<TetId> old_of = tri_.renumber(workers);
     std::vector<CellId> cells(old_of.size());
     std::vector<std::uint32_t> records(old_of.size());
-    std::vector<TetLabels> ordered(1);  // 0: no labels
-    for (std::size_t i = 0; i < old_of.size(); ++i) {
-        const TetId t{i};
-        cells[i] = cell_[old_of[i].index()];
-        const std::uint32_t r = record_[old_of[i].index()];
-        if (r == 0) continue;
-        const TetLabels& before = records_[r];
-        std::array<std::size_t, 4> slot{};  // by corner: where it was
-        for (unsigned k = 0; k < 4; ++k)
-            slot[k] = static_cast<std::size_t>(std::find(labelled[r].begin(), labelled[r].end(), tets.corner(t, k)) - labelled[r].begin());
-        records[i] = static_cast<std::uint32_t>(ordered.size());
-        TetLabels& after = ordered.emplace_back();
-        for (unsigned k = 0; k < 4; ++k) after.facets[k] = before.facets[slot[k]];
-        for (unsigned e = 0; e < 6; ++e) after.segments[e] = before.segments[kEdgeOf[slot[kEdgeCorners[e][0]]][slot[kEdgeCorners[e][1]]]];
-    }
+    std::vector<TetLabels> ordered(records_.size());
+    workers.for_ranges(old_of.size(), std::size_t{1} << 15, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const TetId t{i};
+            cells[i] = cell_[old_of[i].index()];
+            const std::uint32_t r = records[i] = record_[old_of[i].index()];
+            if (r == 0) continue;
+            std::array<std::size_t, 4> slot{};  // by corner: where it was
+            for (unsigned k = 0; k < 4; ++k)
+                slot[k] = static_cast<std::size_t>(std::find(labelled[r].begin(), labelled[r].end(), tets.corner(t, k)) - labelled[r].begin());
+            for (unsigned k = 0; k < 4; ++k) ordered[r].facets[k] = records_[r].facets[slot[k]];
+            for (unsigned e = 0; e < 6; ++e) ordered[r].segments[e] = records_[r].segments[kEdgeOf[slot[kEdgeCorners[e][0]]][slot[kEdgeCorners[e][1]]]];
+        }
+    });
     cell_ = std::move(cells);
     record_ = std::move(records);
     records_ = std::move(ordered);
-    free_records_.clear();
 }
 
 }  // namespace wellmesh

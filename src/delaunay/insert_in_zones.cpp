@@ -97,8 +97,8 @@ Triangulation Triangulation::view_of_zone(std::uint8_t zone, std::uint8_t* zone_
     return out;
 }
 
-/// In a view. @param left  gets what must wait: its cavity is not all of this zone, or it is refused, or there is no room.
-void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId seed, BulkObserver* observer, std::vector<std::uint32_t>& left) {
+/// In a view. @param left  gets what must wait: its cavity is not all of this zone, or there is no room.
+void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId seed, BulkObserver* observer, std::vector<std::uint32_t>& left, std::vector<std::uint32_t>& refused) {
     if (!seed.valid()) {
         left.assign(order.begin(), order.end());
         return;
@@ -125,15 +125,16 @@ void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId s
             continue;
         }
         if (observer && !observer->welcomes(p, at)) {
-            left.push_back(i);
+            refused.push_back(i);
             continue;
         }
         if (!grow_cavity<true>(p, at, cavity, [](const BoundaryFace&) { return true; }) || tets_.room() + cavity.tets.size() < cavity.boundary.size()) {
             left.push_back(i);
             continue;
         }
-        if (observer && !observer->prepare(cavity)) {
-            left.push_back(i);
+        const auto answer = observer ? observer->prepare(cavity) : BulkObserver::Answer::yes;
+        if (answer != BulkObserver::Answer::yes) {
+            (answer == BulkObserver::Answer::never ? refused : left).push_back(i);
             continue;
         }
         insert_vertex(v, cavity);
@@ -164,7 +165,7 @@ std::vector<std::uint32_t> Triangulation::insert_one_by_one(std::span<const std:
             duplicates_.push_back({v, cavity.duplicate});
             continue;
         }
-        if (observer && !observer->prepare(cavity)) {
+        if (observer && observer->prepare(cavity) != BulkObserver::Answer::yes) {
             left.push_back(order[k]);
             continue;
         }
@@ -179,7 +180,7 @@ std::vector<std::uint32_t> Triangulation::insert_one_by_one(std::span<const std:
 }
 
 /// @return what is left
-std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn, BulkObserver* observer) {
+std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn, BulkObserver* observer, std::vector<std::uint32_t>& refused) {
     const std::size_t zones = std::min({std::bit_floor(order.size() / kLeastPointsAZone), std::bit_ceil(std::size_t{workers.threads()}), kMostZones});
     if (zones < 2) return {order.begin(), order.end()};
     constexpr std::size_t kSampleAZone = 1024;
@@ -189,7 +190,7 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
     const ZoneTree tree(std::move(sample), zones, turn);
 
     struct Zone {
-        std::vector<std::uint32_t> order, left;
+        std::vector<std::uint32_t> order, left, refused;
         std::vector<TetId> slots;
         TetId seed{};
         std::uint32_t epoch = 0;
@@ -241,7 +242,7 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
     workers.for_each(zones, [&](std::size_t z) {
         for (const TetId t : team[z].slots) zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
         Triangulation view = view_of_zone(static_cast<std::uint8_t>(z), zone_of_tet.data(), std::move(team[z].slots));
-        view.insert_in_zone(team[z].order, team[z].seed, observer ? &observer->for_zone(z) : nullptr, team[z].left);
+        view.insert_in_zone(team[z].order, team[z].seed, observer ? &observer->for_zone(z) : nullptr, team[z].left, team[z].refused);
         team[z].epoch = view.epoch_;
         team[z].duplicates = std::move(view.duplicates_);
         team[z].store = std::move(view.tets_);
@@ -252,6 +253,7 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
     std::vector<std::uint32_t> left;
     for (const Zone& z : team) {
         left.insert(left.end(), z.left.begin(), z.left.end());
+        refused.insert(refused.end(), z.refused.begin(), z.refused.end());
         epoch_ = std::max(epoch_, z.epoch);
         duplicates_.insert(duplicates_.end(), z.duplicates.begin(), z.duplicates.end());
         tets_.take_back(z.store);
@@ -292,7 +294,7 @@ std::vector<std::uint32_t> Triangulation::insert_on(Workers& workers, std::span<
         done += part.size();
         std::vector<std::uint32_t> left(part.begin(), part.end());
         constexpr unsigned kTurns = 4;
-        for (unsigned turn = 0; turn < kTurns && !left.empty(); ++turn) left = insert_in_zones(workers, left, turn, observer);
+        for (unsigned turn = 0; turn < kTurns && !left.empty(); ++turn) left = insert_in_zones(workers, left, turn, observer, refused);
         left = insert_one_by_one(left, observer);
         refused.insert(refused.end(), left.begin(), left.end());
     }

@@ -20,7 +20,7 @@ std::vector<TetId> Triangulation::renumber(Workers& workers) {
         tets_, vertices_.size(), workers,
         [&](std::size_t n) {
             old_of.resize(n);
-            (void)renumbered.take_slots(n);
+            renumbered.start_anew(n);
         },
         [&](std::size_t place, TetId t, const TetStore::Corners& c) {
             old_of[place] = t;

@@ -80,6 +80,11 @@ public:
     void prefetch(TetId t) const { __builtin_prefetch(tet_.data() + t.index()); }
     void reserve(std::size_t tets) { tet_.reserve(tets); }
     void clear();
+    /// This many slots, all of which are to be set, and none free.
+    void start_anew(std::size_t slots) {
+        clear();
+        tet_.resize_as_is(slots);
+    }
 
     // --- views, for several workers at once (Triangulation::insert_in_zones)
     /// The same tetrahedra, with `slots` free ones of its own: take_slots() made them. Valid until this store grows.

@@ -64,8 +64,9 @@ public:
     virtual void join() = 0;
     /// Is a vertex at p welcome, which this tetrahedron holds, or beyond this ghost's face? Asked before its cavity is known.
     virtual bool welcomes(const Vec3& p, TetId holder) = 0;
-    /// Called just before the point of the cavity becomes a vertex; false: it must not.
-    virtual bool prepare(const Cavity& cavity) = 0;
+    enum class Answer : std::uint8_t { yes, never, not_now };
+    /// Called just before the point of the cavity becomes a vertex; it does not if the answer isn't yes.
+    virtual Answer prepare(const Cavity& cavity) = 0;
     /// ... and just after. Tetrahedron i stands on face i of the cavity's boundary.
     virtual void made(VertexId v, const std::vector<TetId>& tets) = 0;
     /// Asked now and then; once it has said no to one thread it says so to all.
@@ -182,8 +183,8 @@ private:
     // of views: what may be touched
     [[nodiscard]] bool is_mine(TetId t) const { return zone_of_tet_[t.index()] == zone_; }
     Triangulation view_of_zone(std::uint8_t zone, std::uint8_t* zone_of_tet, std::vector<TetId> slots);
-    void insert_in_zone(std::span<const std::uint32_t> order, TetId seed, BulkObserver* observer, std::vector<std::uint32_t>& left);
-    std::vector<std::uint32_t> insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn, BulkObserver* observer);
+    void insert_in_zone(std::span<const std::uint32_t> order, TetId seed, BulkObserver* observer, std::vector<std::uint32_t>& left, std::vector<std::uint32_t>& refused);
+    std::vector<std::uint32_t> insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn, BulkObserver* observer, std::vector<std::uint32_t>& refused);
     /// Numbers for the vertices of one cavity or hole: forgets all but infinity, which is 0; there is room for `most` more.
     void clear_local_numbers(std::size_t most);
     /// 1, 2, 3, ... in order of first mention.

@@ -40,21 +40,34 @@ void GradedOctree::balance() {
     for (std::uint32_t i = 0; i < nodes_.size(); ++i)
         if (is_leaf(i) && nodes_[i].used) waiting.push_back(i);
     while (!waiting.empty()) {
-        const Node node = nodes_[waiting.back()];
-        const bool still_leaf = node.first_child == 0;
+        const std::uint32_t leaf = waiting.back();
+        const Node node = nodes_[leaf];
         waiting.pop_back();
-        if (!still_leaf || node.depth < 2) continue;
-        const std::uint32_t cells = 1U << node.depth;
+        if (node.first_child != 0 || node.depth < 2) continue;
+        // Cells around its parent must be split down to the parent's own size where they touch a used leaf. The first such one of eight siblings asks for all.
+        const std::uint32_t eldest = leaf - ((node.at[0] & 1U) + 2 * (node.at[1] & 1U) + 4 * (node.at[2] & 1U));
+        std::array<bool, 27> is_touched{};
+        bool asked = false;
+        for (std::uint32_t s = 0; s < 8; ++s) {
+            if (!nodes_[eldest + s].used || !is_leaf(eldest + s)) continue;
+            asked = asked || eldest + s < leaf;
+            const std::uint32_t x = s & 1U, y = (s >> 1) & 1U, z = s >> 2;
+            for (std::uint32_t c = 0; c < 8; ++c) is_touched[x + (c & 1U) + 3 * (y + ((c >> 1) & 1U)) + 9 * (z + (c >> 2))] = true;
+        }
+        if (asked) continue;
+        const unsigned depth = node.depth - 1U;
+        const std::uint32_t cells = 1U << depth;
         for (std::uint32_t k = 0; k < 27; ++k) {
+            if (!is_touched[k]) continue;
             // Unsigned wrap-around makes cells outside the root too large.
-            const std::array<std::uint32_t, 3> at{node.at[0] + k % 3 - 1, node.at[1] + k / 3 % 3 - 1, node.at[2] + k / 9 - 1};
+            const std::array<std::uint32_t, 3> at{node.at[0] / 2 + k % 3 - 1, node.at[1] / 2 + k / 3 % 3 - 1, node.at[2] / 2 + k / 9 - 1};
             if (at[0] >= cells || at[1] >= cells || at[2] >= cells) continue;
-            std::uint32_t neighbour = find(node.depth, at);
-            while (nodes_[neighbour].depth + 1 < node.depth) {
+            std::uint32_t neighbour = find(depth, at);
+            while (nodes_[neighbour].depth < depth) {
                 const std::uint32_t first = split(neighbour);
                 if (nodes_[neighbour].used)
                     for (std::uint32_t c = 0; c < 8; ++c) waiting.push_back(first + c);
-                neighbour = find(node.depth, at);
+                neighbour = find(depth, at);
             }
         }
     }
