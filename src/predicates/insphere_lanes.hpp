@@ -2,6 +2,8 @@
 // InsphereFormula over the four lanes of a vector register, where the processor has them.
 #pragma once
 
+#include <array>
+
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
@@ -13,5 +15,9 @@ namespace wellmesh {
 /// same error bounds hold; the order of two sums differs, so the last bits may.
 /// @pre has_insphere_lanes(); a, b, c and d are aligned to 32 bytes and eight more bytes may be read behind each, so that one load fetches it
 [[nodiscard]] double insphere_value_in_lanes(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) noexcept;
+
+/// Four values at once, lane i from the points points[i] and e; bit by bit those of InsphereFormula::value.
+/// @pre as above, of all points but e
+[[nodiscard]] std::array<double, 4> four_insphere_values(const std::array<std::array<const Vec3*, 4>, 4>& points, const Vec3& e) noexcept;
 
 }  // namespace wellmesh
