@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 #include "core/vec3_math.hpp"
 
@@ -42,35 +42,52 @@ struct WeightedEdge {
 
 }  // namespace
 
-BallSearch::BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights)
-    : originals_(&points), weights_(weights.empty() ? nullptr : &weights), order_(points.size()) {
+BallSearch::BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights) {
+    Workers alone;
+    *this = BallSearch(points, weights, alone);
+}
+
+BallSearch::BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights, Workers& workers)
+    : originals_(&points), weights_(weights.empty() ? nullptr : &weights), points_(points.size()) {
     double largest = 0;
     for (const Vec3& p : points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     if (largest > 0) scale_ = std::ldexp(1.0, -std::ilogb(largest) - 1);
     if (weights_ != nullptr) largest_weight_ = scale_ * *std::max_element(weights.begin(), weights.end()) * scale_;
-    std::iota(order_.begin(), order_.end(), 0U);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    root_ = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        points_[i] = {scale_ * points[i], static_cast<std::uint32_t>(i)};
+        for (std::size_t k = 0; k < 3; ++k) {
+            root_.low[k] = std::min(root_.low[k], coordinate(points_[i].at, k));
+            root_.high[k] = std::max(root_.high[k], coordinate(points_[i].at, k));
+        }
+    }
     std::size_t nodes = 1;
     for (std::size_t n = points.size(); n > kLeaf; n = n - n / 2) nodes = 2 * nodes + 1;
     axes_.assign(nodes, 0);
     cuts_.assign(nodes, 0);
-    build(0, order_.size(), 0);
-    points_.reserve(points.size());
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    root_ = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-    for (const std::uint32_t v : order_) {
-        points_.push_back(scale_ * points[v]);
-        for (std::size_t k = 0; k < 3; ++k) {
-            root_.low[k] = std::min(root_.low[k], coordinate(points_.back(), k));
-            root_.high[k] = std::max(root_.high[k], coordinate(points_.back(), k));
+    // Level by level to where there are enough nodes for all threads, then each of these to its leaves.
+    struct Node {
+        std::size_t begin, end, node;
+    };
+    std::vector<Node> level{{0, points_.size(), 0}};
+    for (int depth = 0; depth < 6 && level.front().end - level.front().begin > 64 * kLeaf; ++depth) {
+        workers.for_each(level.size(), [&](std::size_t i) { split(level[i].begin, level[i].end, level[i].node); });
+        std::vector<Node> next;
+        for (const auto& [begin, end, node] : level) {
+            const std::size_t middle = begin + (end - begin) / 2;
+            next.push_back({begin, middle, 2 * node + 1});
+            next.push_back({middle, end, 2 * node + 2});
         }
+        level = std::move(next);
     }
+    workers.for_each(level.size(), [&](std::size_t i) { build(level[i].begin, level[i].end, level[i].node); });
 }
 
-void BallSearch::build(std::size_t begin, std::size_t end, std::size_t node) {
-    if (end - begin <= kLeaf) return;
-    Vec3 low = (*originals_)[order_[begin]], high = low;
+void BallSearch::split(std::size_t begin, std::size_t end, std::size_t node) {
+    Vec3 low = points_[begin].at, high = low;
     for (std::size_t i = begin; i < end; ++i) {
-        const Vec3& p = (*originals_)[order_[i]];
+        const Vec3& p = points_[i].at;
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
@@ -78,10 +95,18 @@ void BallSearch::build(std::size_t begin, std::size_t end, std::size_t node) {
     const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     axes_[node] = static_cast<std::uint8_t>(axis);
     const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(begin), at(middle), at(end),
-                     [&](std::uint32_t p, std::uint32_t q) { return coordinate((*originals_)[p], axis) < coordinate((*originals_)[q], axis); });
-    cuts_[node] = scale_ * coordinate((*originals_)[order_[middle]], axis);
+    const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto sort_by = [&](double Vec3::* x) { std::nth_element(at(begin), at(middle), at(end), [x](const Point& p, const Point& q) { return p.at.*x < q.at.*x; }); };
+    if (axis == 0) sort_by(&Vec3::x);
+    else if (axis == 1) sort_by(&Vec3::y);
+    else sort_by(&Vec3::z);
+    cuts_[node] = coordinate(points_[middle].at, axis);
+}
+
+void BallSearch::build(std::size_t begin, std::size_t end, std::size_t node) {
+    if (end - begin <= kLeaf) return;
+    split(begin, end, node);
+    const std::size_t middle = begin + (end - begin) / 2;
     build(begin, middle, 2 * node + 1);
     build(middle, end, 2 * node + 2);
 }

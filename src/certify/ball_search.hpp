@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/workers.hpp"
 #include "wellmesh/predicates.hpp"
 #include "wellmesh/vec3.hpp"
 
@@ -47,6 +48,7 @@ class BallSearch {
 public:
     /// @param weights  of all points, or empty. Both must outlive this.
     explicit BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights = {});
+    BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights, Workers& workers);
 
     [[nodiscard]] Ball circumball(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d) const;
     [[nodiscard]] Ball equatorial_ball(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c) const;
@@ -55,7 +57,7 @@ public:
     /// Calls visit(vertex) for a superset of the vertices strictly inside the ball, or in conflict, until it returns true. @return whether it did.
     template <class Visit>
     bool any_in(const Ball& ball, Visit&& visit) const {
-        return !order_.empty() && search(ball, 0, order_.size(), 0, root_, visit);
+        return !points_.empty() && search(ball, 0, points_.size(), 0, root_, visit);
     }
 
     /// By how much the vertex is inside, as a fraction of the squared radius: 1 - |p - centre|^2 / R^2, rounded (64 bits of mantissa
@@ -66,11 +68,17 @@ private:
     struct Box {
         std::array<double, 3> low, high;
     };
+    struct Point {
+        Vec3 at;  // scaled
+        std::uint32_t number;
+    };
     static constexpr std::size_t kLeaf = 8;
 
     template <class Real>
     [[nodiscard]] BallForm<Real> form(long double a, const std::array<long double, 3>& n, long double a_error, long double n_error, long double largest_difference) const;
     [[nodiscard]] Ball finish(const WeightedPoint& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const;
+    /// Of one node, not of those below.
+    void split(std::size_t begin, std::size_t end, std::size_t node);
     void build(std::size_t begin, std::size_t end, std::size_t node);
     [[nodiscard]] static bool excludes(const Ball& ball, const Box& box);
     [[nodiscard]] static bool excludes(const Ball& ball, const Vec3& point) { return excludes(ball, {{point.x, point.y, point.z}, {point.x, point.y, point.z}}); }
@@ -79,7 +87,7 @@ private:
     bool search(const Ball& ball, std::size_t begin, std::size_t end, std::size_t node, const Box& box, Visit& visit) const {
         if (end - begin <= kLeaf) {
             for (std::size_t i = begin; i < end; ++i)
-                if (!excludes(ball, points_[i]) && visit(order_[i])) return true;
+                if (!excludes(ball, points_[i].at) && visit(points_[i].number)) return true;
             return false;
         }
         const std::size_t middle = begin + (end - begin) / 2, axis = axes_[node];
@@ -100,8 +108,7 @@ private:
     const std::vector<Vec3>* originals_;
     const std::vector<double>* weights_;  // null: none
     double largest_weight_ = 0;           // scaled
-    std::vector<std::uint32_t> order_;  // a node's points are contiguous, its first half before its cut
-    std::vector<Vec3> points_;          // scaled, in this order
+    std::vector<Point> points_;         // a node's are contiguous, its first half before its cut
     std::vector<std::uint8_t> axes_;    // of each inner node, heap numbering
     std::vector<double> cuts_;          // scaled: a coordinate of the first half is at most this, of the second at least
     Box root_{};

@@ -136,7 +136,7 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
     FaceSurvey faces = survey_faces(mesh, stars);
     poll();
     const bool faces_in_order = !broken(positive) && !broken(faces.face_sharing) && !broken(faces.opposite_sides);
-    const BallSearch search(mesh.points(), mesh.weights());
+    const BallSearch search(mesh.points(), mesh.weights(), mesh.workers());
     const Claim disjoint = claim_disjoint(mesh, search, faces.constraints, faces_in_order);
     claims.insert(claims.end(), {positive, faces.face_sharing, faces.opposite_sides, faces.distinct_tets, disjoint, claim_conservation(mesh, faces), distinct, used,
                                  faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh, stars)});

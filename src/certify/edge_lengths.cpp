@@ -2,9 +2,11 @@
 #include "certify/edge_lengths.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
+#include <memory>
+#include <mutex>
 #include <span>
+#include <utility>
 
 #include "core/vec3_math.hpp"
 
@@ -49,22 +51,20 @@ public:
         bool interior, boundary;  ///< an end of an edge of such a tetrahedron
     };
 
+    explicit UpperEdges(std::size_t vertices) : marks_(vertices, {kNone, 0}) {}
+
     const std::vector<End>& of(const SuspectMesh& mesh, std::uint32_t vertex, std::span<const std::uint32_t> tets, const std::vector<TetClass>& classes) {
         ends_.clear();
-        const std::size_t slots = std::bit_ceil(std::max<std::size_t>(16, 4 * tets.size()));
-        table_.assign(slots, kNone);
-        const int shift = 64 - std::countr_zero(slots);
         for (const std::uint32_t t : tets) {
             if (classes[t] == TetClass::left_out) continue;
             for (const std::uint32_t w : mesh.mesh().tets[t]) {
                 if (w <= vertex) continue;
-                auto i = static_cast<std::size_t>((w * 0x9E3779B97F4A7C15U) >> shift);
-                while (table_[i] != kNone && ends_[table_[i]].vertex != w) i = (i + 1) & (slots - 1);
-                if (table_[i] == kNone) {
-                    table_[i] = static_cast<std::uint32_t>(ends_.size());
+                Mark& mark = marks_[w];
+                if (mark.by != vertex) {
+                    mark = {vertex, static_cast<std::uint32_t>(ends_.size())};
                     ends_.push_back({w, false, false});
                 }
-                End& end = ends_[table_[i]];
+                End& end = ends_[mark.place];
                 (classes[t] == TetClass::interior ? end.interior : end.boundary) = true;
             }
         }
@@ -72,8 +72,37 @@ public:
     }
 
 private:
-    std::vector<End> ends_;             // in order of appearance
-    std::vector<std::uint32_t> table_;  // by open addressing, numbers in ends_
+    struct Mark {
+        std::uint32_t by, place;  // the lower end that was last to find the vertex, and where in ends_
+    };
+    std::vector<End> ends_;  // in order of appearance
+    std::vector<Mark> marks_;
+};
+
+/// As many as there are threads at work. Which one a piece of work gets makes no difference.
+class UpperEdgesPool {
+public:
+    explicit UpperEdgesPool(std::size_t vertices) : vertices_(vertices) {}
+    std::unique_ptr<UpperEdges> take() {
+        {
+            const std::lock_guard lock(mutex_);
+            if (!idle_.empty()) {
+                std::unique_ptr<UpperEdges> edges = std::move(idle_.back());
+                idle_.pop_back();
+                return edges;
+            }
+        }
+        return std::make_unique<UpperEdges>(vertices_);
+    }
+    void give_back(std::unique_ptr<UpperEdges> edges) {
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(edges));
+    }
+
+private:
+    std::size_t vertices_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<UpperEdges>> idle_;
 };
 
 }  // namespace
@@ -81,12 +110,13 @@ private:
 void measure_edges(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<TetClass>& classes, ShapeStatistics& all, ShapeStatistics& interior,
                    ShapeStatistics& boundary) {
     std::vector<Lengths> parts((mesh.vertex_count() + kVertexGrain - 1) / kVertexGrain);
+    UpperEdgesPool pool(mesh.vertex_count());
     mesh.workers().for_ranges(mesh.vertex_count(), kVertexGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        UpperEdges edges;
+        std::unique_ptr<UpperEdges> edges = pool.take();
         Lengths lengths;
         for (std::size_t i = begin; i < end; ++i) {
             const auto v = static_cast<std::uint32_t>(i);
-            for (const UpperEdges::End& e : edges.of(mesh, v, stars.of(v), classes)) {
+            for (const UpperEdges::End& e : edges->of(mesh, v, stars.of(v), classes)) {
                 const double length = distance(mesh.mesh().vertices[v], mesh.mesh().vertices[e.vertex]);
                 lengths.all.add(length);
                 if (e.interior) lengths.interior.add(length);
@@ -94,6 +124,7 @@ void measure_edges(const SuspectMesh& mesh, const TetsByCorner& stars, const std
             }
         }
         parts[piece] = lengths;
+        pool.give_back(std::move(edges));
     });
     Lengths sum;
     for (const Lengths& part : parts) sum.all.add(part.all), sum.interior.add(part.interior), sum.boundary.add(part.boundary);
