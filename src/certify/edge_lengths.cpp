@@ -53,22 +53,23 @@ public:
 
     explicit UpperEdges(std::size_t vertices) : marks_(vertices, {kNone, 0}) {}
 
-    const std::vector<End>& of(const SuspectMesh& mesh, std::uint32_t vertex, std::span<const std::uint32_t> tets, const std::vector<TetClass>& classes) {
-        ends_.clear();
+    [[nodiscard]] std::span<const End> of(const SuspectMesh& mesh, std::uint32_t vertex, std::span<const std::uint32_t> tets, const std::vector<TetClass>& classes) {
+        ends_.resize(std::max(ends_.size(), 3 * tets.size() + 2));
+        std::uint32_t n = 1;  // the first is for what is no end: whether an edge is new, or leads upwards, can't be predicted
         for (const std::uint32_t t : tets) {
             if (classes[t] == TetClass::left_out) continue;
+            const bool interior = classes[t] == TetClass::interior;
             for (const std::uint32_t w : mesh.mesh().tets[t]) {
-                if (w <= vertex) continue;
                 Mark& mark = marks_[w];
-                if (mark.by != vertex) {
-                    mark = {vertex, static_cast<std::uint32_t>(ends_.size())};
-                    ends_.push_back({w, false, false});
-                }
-                End& end = ends_[mark.place];
-                (classes[t] == TetClass::interior ? end.interior : end.boundary) = true;
+                const bool up = w > vertex, is_new = up & (mark.by != vertex);
+                const std::uint32_t place = is_new ? n : up ? mark.place : 0;
+                mark = {is_new ? vertex : mark.by, is_new ? n : mark.place};
+                End& end = ends_[place];
+                end = {w, static_cast<bool>((end.interior & !is_new) | interior), static_cast<bool>((end.boundary & !is_new) | !interior)};
+                n += is_new;
             }
         }
-        return ends_;
+        return {ends_.data() + 1, n - 1};
     }
 
 private:

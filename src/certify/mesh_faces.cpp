@@ -73,6 +73,8 @@ public:
                 if (!add(v[1], v[2], v[3], t, !tet.odd) || !add(v[1], v[3], v[2], t, tet.odd) || !add(v[2], v[3], v[1], t, !tet.odd)) return false;
             } else if (v[1] == vertex) {
                 if (!add(v[2], v[3], v[0], t, tet.odd)) return false;
+            } else {
+                break;  // from here on it is the third corner, which is the lowest of no face
             }
         }
         return true;

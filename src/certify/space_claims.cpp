@@ -46,13 +46,31 @@ Box3 box_of(const SuspectMesh& mesh, const Tet& tet) {
 
 std::uint32_t tet_of_hull_face(const ConstraintTriangle& t) { return t.tets[t.tets[0] == kNone ? 1 : 0]; }
 
+/// A hull face and its plane.
+struct HullFace {
+    Box3 box;
+    Vec3 corner, normal;  ///< rounded once a difference, a product and a sum, as orient3d's minors are
+    std::uint32_t triangle = 0;
+
+    HullFace(const SuspectMesh& mesh, const ConstraintTriangle& t, std::uint32_t number) : corner(mesh.point(t.v[0])), triangle(number) {
+        const Corners corners{mesh.point(t.v[0]), mesh.point(t.v[1]), mesh.point(t.v[2])};
+        box = Box3::of(corners.data(), 3);
+        normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    }
+};
+
 /// Does the positive tetrahedron meet the plane of the hull face in more than a point or an edge, with points on its inner side?
-bool spans_plane_inside(const SuspectMesh& mesh, const ConstraintTriangle& face, const Tet& tet) {
+bool spans_plane_inside(const SuspectMesh& mesh, const HullFace& plane, const ConstraintTriangle& face, const Tet& tet) {
     const Sign inner_sign = face.tets[0] == kNone ? Sign::negative : Sign::positive;
+    const double bound = mesh.predicates().orient3d_bound();
     int inner = 0, outer = 0;
     for (const std::uint32_t v : tet) {
         if (v == face.v[0] || v == face.v[1] || v == face.v[2]) continue;
-        const Sign s = mesh.predicates().orient3d(mesh.point(face.v[0]), mesh.point(face.v[1]), mesh.point(face.v[2]), mesh.point(v));
+        // orient3d's determinant, expanded by its last row: with as many roundings, so that the same bound holds.
+        const double value = dot(plane.normal, mesh.point(v) - plane.corner);
+        const Sign s = value > bound    ? Sign::positive
+                       : value < -bound ? Sign::negative
+                                        : mesh.predicates().orient3d(mesh.point(face.v[0]), mesh.point(face.v[1]), mesh.point(face.v[2]), mesh.point(v));
         if (s != Sign::zero) ++(s == inner_sign ? inner : outer);
     }
     return inner > 0 && (outer > 0 || inner == 1);
@@ -64,60 +82,65 @@ constexpr std::size_t kPairsPerElement = 100;
 
 enum class InsideHull : std::uint8_t { clear, not_clear, too_many };
 
-/// Boxes near a few tetrahedra that are listed one after the other: mostly they are neighbours, and one search serves them all.
-class NearBoxes {
+/// Hull faces near a few tetrahedra that are listed one after the other: mostly they are neighbours, and one search serves them all.
+class NearFaces {
 public:
     static constexpr std::size_t kTets = 32;  ///< listed together
 
-    NearBoxes(const BoxTree& tree, const std::vector<Box3>& boxes) : tree_(tree), boxes_(boxes) {}
+    NearFaces(const BoxTree& tree, const std::vector<HullFace>& faces) : tree_(tree), faces_(faces) {}
 
     void move_to(const Box3& around) {
         found_.clear();
         // Where they are no neighbours, each is searched for by itself.
         few_ = !tree_.any_meeting(around, [&](std::uint32_t i) {
-            found_.push_back({boxes_[i], i});
+            if (found_.empty()) box_ = faces_[i].box;
+            box_.grow(faces_[i].box);
+            found_.push_back(faces_[i]);
             return found_.size() > kMost;
         });
     }
-    /// As BoxTree::any_meeting. @pre `box` is inside the one that was moved to.
+    /// Calls visit(face) for those whose box meets `box`, until it returns true. @return whether it did. @pre `box` is inside the one that was moved to.
     template <class Visit>
     bool any_meeting(const Box3& box, Visit&& visit) const {
-        if (!few_) return tree_.any_meeting(box, visit);
-        for (const auto& [near, i] : found_)
-            if (near.meets(box) && visit(i)) return true;
+        if (!few_) return tree_.any_meeting(box, [&](std::uint32_t i) { return visit(faces_[i]); });
+        if (found_.empty() || !box_.meets(box)) return false;
+        for (const HullFace& f : found_) {
+            const bool meets = (f.box.low.x <= box.high.x) & (box.low.x <= f.box.high.x) & (f.box.low.y <= box.high.y) & (box.low.y <= f.box.high.y) &
+                               (f.box.low.z <= box.high.z) & (box.low.z <= f.box.high.z);
+            if (meets && visit(f)) return true;
+        }
         return false;
     }
 
 private:
     static constexpr std::size_t kMost = 256;
     const BoxTree& tree_;
-    const std::vector<Box3>& boxes_;
-    std::vector<std::pair<Box3, std::uint32_t>> found_;
+    const std::vector<HullFace>& faces_;
+    std::vector<HullFace> found_;
+    Box3 box_{};
     bool few_ = true;
 };
 
 /// Clear: no tetrahedron overlaps the one at a hull face next to that face, which proves `disjoint_tets` if the premises of (1) hold.
 InsideHull look_inside_hull(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles) {
-    std::vector<std::uint32_t> hull;
+    std::vector<HullFace> hull;
     std::vector<Box3> boxes;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         if (!triangles[i].on_hull) continue;
-        const Triangle& v = triangles[i].v;
-        const Corners corners{mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2])};
-        hull.push_back(static_cast<std::uint32_t>(i));
-        boxes.push_back(Box3::of(corners.data(), 3));
+        hull.emplace_back(mesh, triangles[i], static_cast<std::uint32_t>(i));
+        boxes.push_back(hull.back().box);
     }
     const std::size_t most_pairs = kPairsPerElement * (mesh.tet_count() + hull.size());
     const BoxCover cover(boxes);
-    const BoxTree tree(boxes);
+    const BoxTree tree(std::move(boxes));
     // Either ends the search; then the claim is decided in another way, so that it doesn't matter which was first.
     std::atomic<std::size_t> pairs = 0;
     std::atomic<bool> overlapping = false;
     mesh.workers().for_ranges(mesh.tet_count(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        NearBoxes near(tree, boxes);
-        std::array<Box3, NearBoxes::kTets> box{};
-        for (std::size_t first = begin; first < end && !overlapping && pairs <= most_pairs; first += NearBoxes::kTets) {
-            const std::size_t n = std::min(NearBoxes::kTets, end - first);
+        NearFaces near(tree, hull);
+        std::array<Box3, NearFaces::kTets> box{};
+        for (std::size_t first = begin; first < end && !overlapping && pairs <= most_pairs; first += NearFaces::kTets) {
+            const std::size_t n = std::min(NearFaces::kTets, end - first);
             for (std::size_t i = 0; i < n; ++i) box[i] = box_of(mesh, mesh.mesh().tets[first + i]);
             Box3 around = box[0];
             for (std::size_t i = 1; i < n; ++i) around.grow(box[i]);
@@ -127,11 +150,11 @@ InsideHull look_inside_hull(const SuspectMesh& mesh, const std::vector<Constrain
             for (std::size_t i = 0; i < n; ++i) {
                 const std::size_t t = first + i;
                 const Tet& tet = mesh.mesh().tets[t];
-                const bool found = near.any_meeting(box[i], [&](std::uint32_t h) {
+                const bool found = near.any_meeting(box[i], [&](const HullFace& plane) {
                     if (++met > most_pairs) return true;
-                    const ConstraintTriangle& face = triangles[hull[h]];
+                    const ConstraintTriangle& face = triangles[plane.triangle];
                     const std::uint32_t owner = tet_of_hull_face(face);
-                    return owner != t && spans_plane_inside(mesh, face, tet) && overlap(mesh, t, owner);
+                    return owner != t && spans_plane_inside(mesh, plane, face, tet) && overlap(mesh, t, owner);
                 });
                 if (found && met <= most_pairs) overlapping = true;
             }

@@ -31,7 +31,8 @@ private:
     }
 };
 
-/// For every vertex, ascending, the tetrahedra with a face or an edge of which it is the lowest corner: all but those of which it is the highest.
+/// For every vertex the tetrahedra with a face or an edge of which it is the lowest corner: those of which it is the lowest corner, then those of which
+/// it is the second, then the third; ascending in each, so that which comes next is no surprise to the processor.
 /// O(n), 12 bytes a tetrahedron and 8 a vertex.
 class TetsByCorner {
 public:
