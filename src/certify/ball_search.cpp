@@ -164,41 +164,51 @@ namespace {
 
 enum class Verdict : std::uint8_t { outside, meets, unsure };
 
-/// Whether the ball meets the box. `low` and `high` are its corners' differences from the base.
+/// The least of the form's share of one axis over the interval of these ends, differences from the base, and how wrong it may be.
 template <class Real>
-Verdict where(const BallForm<Real>& form, const std::array<Real, 3>& low, const std::array<Real, 3>& high) {
+std::array<Real, 2> least_along(const BallForm<Real>& form, std::size_t k, Real low, Real high) {
     constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
-    Real lowest = 0, slack = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        // Rounding of the interval's ends: relative to their size, covered by the roundings in a_low and n_error.
-        const auto parabola = [&](Real x) { return (form.a_low * x - form.n[k]) * x; };
-        Real least = std::min(parabola(low[k]), parabola(high[k]));
-        const Real bottom = form.a_low > 0 ? form.n[k] / (2 * form.a_low) : 0;
-        if (form.a_low > 0 && low[k] < bottom && bottom < high[k]) least = -form.n[k] * bottom / 2;
-        lowest += least;
-        // The bottom's own rounding and that of the sum: relative to the terms, of which n x is the larger where f is near 0.
-        slack += (form.n_error[k] + 16 * kRounding * std::abs(form.n[k])) * std::max(std::abs(low[k]), std::abs(high[k]));
-    }
-    lowest -= form.allowance;
+    // Rounding of the interval's ends: relative to their size, covered by the roundings in a_low and n_error.
+    const auto parabola = [&](Real x) { return (form.a_low * x - form.n[k]) * x; };
+    Real least = std::min(parabola(low), parabola(high));
+    const Real bottom = form.a_low > 0 ? form.n[k] / (2 * form.a_low) : 0;
+    if (form.a_low > 0 && low < bottom && bottom < high) least = -form.n[k] * bottom / 2;
+    // The bottom's own rounding and that of the sum: relative to the terms, of which n x is the larger where f is near 0.
+    return {least, (form.n_error[k] + 16 * kRounding * std::abs(form.n[k])) * std::max(std::abs(low), std::abs(high))};
+}
+
+/// Whether the ball meets the box, from what its axes add.
+template <class Real>
+Verdict where(const BallForm<Real>& form, const std::array<Real, 3>& least, const std::array<Real, 3>& slacks) {
+    const Real lowest = (least[0] + least[1] + least[2]) - form.allowance, slack = slacks[0] + slacks[1] + slacks[2];
     return lowest > slack ? Verdict::outside : lowest < -slack ? Verdict::meets : Verdict::unsure;
 }
 
 }  // namespace
 
-bool BallSearch::excludes(const Ball& ball, const Box& box) {
-    const std::array<double, 3> base{ball.base.x, ball.base.y, ball.base.z};
-    std::array<double, 3> low{}, high{};
+void BallSearch::Bounds::update(const Ball& ball, std::size_t axis) {
+    const double base = coordinate(ball.base, axis);
+    const auto [lowest, error] = least_along(ball.rough, axis, box.low[axis] - base, box.high[axis] - base);
+    least[axis] = lowest;
+    slack[axis] = error;
+}
+
+bool BallSearch::excludes(const Ball& ball, const Bounds& bounds) {
+    if (const Verdict rough = where(ball.rough, bounds.least, bounds.slack); rough != Verdict::unsure) return rough == Verdict::outside;
+    std::array<Long, 3> least{}, slack{};
     for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = box.low[k] - base[k];
-        high[k] = box.high[k] - base[k];
+        const auto base = static_cast<Long>(coordinate(ball.base, k));
+        const auto [lowest, error] = least_along(ball.close, k, static_cast<Long>(bounds.box.low[k]) - base, static_cast<Long>(bounds.box.high[k]) - base);
+        least[k] = lowest;
+        slack[k] = error;
     }
-    if (const Verdict rough = where(ball.rough, low, high); rough != Verdict::unsure) return rough == Verdict::outside;
-    std::array<Long, 3> close_low{}, close_high{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        close_low[k] = static_cast<Long>(box.low[k]) - static_cast<Long>(base[k]);
-        close_high[k] = static_cast<Long>(box.high[k]) - static_cast<Long>(base[k]);
-    }
-    return where(ball.close, close_low, close_high) == Verdict::outside;
+    return where(ball.close, least, slack) == Verdict::outside;
+}
+
+bool BallSearch::excludes(const Ball& ball, const Vec3& point) {
+    Bounds bounds{{{point.x, point.y, point.z}, {point.x, point.y, point.z}}, {}, {}};
+    for (std::size_t axis = 0; axis < 3; ++axis) bounds.update(ball, axis);
+    return excludes(ball, bounds);
 }
 
 double BallSearch::depth(const Ball& ball, std::uint32_t vertex) const {

@@ -57,7 +57,10 @@ public:
     /// Calls visit(vertex) for a superset of the vertices strictly inside the ball, or in conflict, until it returns true. @return whether it did.
     template <class Visit>
     bool any_in(const Ball& ball, Visit&& visit) const {
-        return !points_.empty() && search(ball, 0, points_.size(), 0, root_, visit);
+        if (points_.empty()) return false;
+        Bounds bounds{root_, {}, {}};
+        for (std::size_t axis = 0; axis < 3; ++axis) bounds.update(ball, axis);
+        return search(ball, 0, points_.size(), 0, bounds, visit);
     }
 
     /// By how much the vertex is inside, as a fraction of the squared radius: 1 - |p - centre|^2 / R^2, rounded (64 bits of mantissa
@@ -80,11 +83,18 @@ private:
     /// Of one node, not of those below.
     void split(std::size_t begin, std::size_t end, std::size_t node);
     void build(std::size_t begin, std::size_t end, std::size_t node);
-    [[nodiscard]] static bool excludes(const Ball& ball, const Box& box);
-    [[nodiscard]] static bool excludes(const Ball& ball, const Vec3& point) { return excludes(ball, {{point.x, point.y, point.z}, {point.x, point.y, point.z}}); }
+    [[nodiscard]] static bool excludes(const Ball& ball, const Vec3& point);
+
+    /// A box, and for each axis the least that the rough form adds over it, and how wrong that may be: a cut changes one of the three.
+    struct Bounds {
+        Box box;
+        std::array<double, 3> least, slack;
+        void update(const Ball& ball, std::size_t axis);
+    };
+    [[nodiscard]] static bool excludes(const Ball& ball, const Bounds& bounds);
 
     template <class Visit>
-    bool search(const Ball& ball, std::size_t begin, std::size_t end, std::size_t node, const Box& box, Visit& visit) const {
+    bool search(const Ball& ball, std::size_t begin, std::size_t end, std::size_t node, const Bounds& bounds, Visit& visit) const {
         if (end - begin <= kLeaf) {
             for (std::size_t i = begin; i < end; ++i)
                 if (!excludes(ball, points_[i].at) && visit(points_[i].number)) return true;
@@ -92,14 +102,16 @@ private:
         }
         const std::size_t middle = begin + (end - begin) / 2, axis = axes_[node];
         const double cut = cuts_[node];
-        Box near = box, far = box;
-        near.high[axis] = far.low[axis] = cut;
+        Bounds near = bounds;
         std::size_t near_begin = begin, near_end = middle, near_node = 2 * node + 1, far_begin = middle, far_end = end, far_node = 2 * node + 2;
-        if (coordinate(ball.base, axis) > cut) {  // the corner's side first: what is inside is mostly near the simplex
-            std::swap(near, far);
-            std::swap(near_begin, far_begin), std::swap(near_end, far_end), std::swap(near_node, far_node);
-        }
+        const bool upper_first = coordinate(ball.base, axis) > cut;  // the corner's side first: what is inside is mostly near the simplex
+        if (upper_first) std::swap(near_begin, far_begin), std::swap(near_end, far_end), std::swap(near_node, far_node);
+        (upper_first ? near.box.low : near.box.high)[axis] = cut;
+        near.update(ball, axis);
         if (!excludes(ball, near) && search(ball, near_begin, near_end, near_node, near, visit)) return true;
+        Bounds far = bounds;
+        (upper_first ? far.box.high : far.box.low)[axis] = cut;
+        far.update(ball, axis);
         return !excludes(ball, far) && search(ball, far_begin, far_end, far_node, far, visit);
     }
     [[nodiscard]] static double coordinate(const Vec3& p, std::size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }

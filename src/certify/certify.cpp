@@ -85,11 +85,10 @@ Claim claim_positive(const SuspectMesh& mesh) {
 Claim claim_distinct_vertices(const SuspectMesh& mesh, const VertexPlaces& places) {
     ClaimBuilder claim("distinct_vertices", "No two vertices are at one place.");
     claim.checked(mesh.vertex_count());
-    look_in_ranges(mesh.workers(), mesh.vertex_count(), kGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
-        for (std::size_t v = begin; v < end; ++v) {
-            const std::uint32_t first = places.first_at(mesh.points()[v]);
-            if (first != v) part.violated(EntityKind::vertex, v + 1, mesh.points()[v], [&] { return fmt::format("vertex {} is where vertex {} is", v + 1, first + 1); });
-        }
+    look_in_ranges(mesh.workers(), places.buckets(), kGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
+        places.for_repetitions(begin, end, [&](std::uint32_t v, std::uint32_t first) {
+            part.violated(EntityKind::vertex, v + std::uint64_t{1}, mesh.points()[v], [&] { return fmt::format("vertex {} is where vertex {} is", v + 1, first + 1); });
+        });
     });
     return claim.decided();
 }

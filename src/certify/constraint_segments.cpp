@@ -39,7 +39,10 @@ std::vector<ConstraintSegment> find_constraint_segments(const SuspectMesh& mesh,
     edges.reserve(3 * triangles.size());
     for (const ConstraintTriangle& t : triangles)
         for (std::size_t i = 0; i < 3; ++i) edges.push_back({sorted(Edge{t.v[i], t.v[(i + 1) % 3]}), t.v[(i + 2) % 3]});
-    std::sort(edges.begin(), edges.end(), [](const EdgeWithOpposite& a, const EdgeWithOpposite& b) { return a.v != b.v ? a.v < b.v : a.opposite < b.opposite; });
+    std::sort(edges.begin(), edges.end(), [](const EdgeWithOpposite& a, const EdgeWithOpposite& b) {
+        const auto key = [](const EdgeWithOpposite& e) { return std::uint64_t{e.v[0]} << 32 | e.v[1]; };
+        return key(a) != key(b) ? key(a) < key(b) : a.opposite < b.opposite;
+    });
     std::vector<ConstraintSegment> segments;
     for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
         while (j < edges.size() && edges[j].v == edges[i].v) ++j;

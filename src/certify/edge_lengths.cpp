@@ -54,22 +54,25 @@ public:
     explicit UpperEdges(std::size_t vertices) : marks_(vertices, {kNone, 0}) {}
 
     [[nodiscard]] std::span<const End> of(const SuspectMesh& mesh, std::uint32_t vertex, std::span<const std::uint32_t> tets, const std::vector<TetClass>& classes) {
-        ends_.resize(std::max(ends_.size(), 3 * tets.size() + 2));
-        std::uint32_t n = 1;  // the first is for what is no end: whether an edge is new, or leads upwards, can't be predicted
+        ends_.resize(std::max(ends_.size(), 3 * tets.size() + 1));
+        std::uint32_t n = 0;
         for (const std::uint32_t t : tets) {
             if (classes[t] == TetClass::left_out) continue;
             const bool interior = classes[t] == TetClass::interior;
-            for (const std::uint32_t w : mesh.mesh().tets[t]) {
+            const auto visit = [&](std::uint32_t w) {  // whether an edge is new can't be predicted, so there is no branch
                 Mark& mark = marks_[w];
-                const bool up = w > vertex, is_new = up & (mark.by != vertex);
-                const std::uint32_t place = is_new ? n : up ? mark.place : 0;
-                mark = {is_new ? vertex : mark.by, is_new ? n : mark.place};
-                End& end = ends_[place];
+                const bool is_new = mark.by != vertex;
+                mark = {vertex, is_new ? n : mark.place};
+                End& end = ends_[mark.place];
                 end = {w, static_cast<bool>((end.interior & !is_new) | interior), static_cast<bool>((end.boundary & !is_new) | !interior)};
                 n += is_new;
-            }
+            };
+            const auto v = AscendingTet(mesh.mesh().tets[t]).v;
+            if (v[0] == vertex) visit(v[1]), visit(v[2]), visit(v[3]);
+            else if (v[1] == vertex) visit(v[2]), visit(v[3]);
+            else visit(v[3]);
         }
-        return {ends_.data() + 1, n - 1};
+        return {ends_.data(), n};
     }
 
 private:

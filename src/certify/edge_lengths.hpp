@@ -16,7 +16,7 @@ enum class TetClass : std::uint8_t { left_out, interior, boundary };
 
 /// Fills min_edge, mean_edge and max_edge of the three statistics: each edge counts once in `all`, and once in each of `interior` and
 /// `boundary` that has a tetrahedron at it. O(n) time on graded meshes.
-/// @param classes  one entry a tetrahedron.
+/// @param classes  one entry a tetrahedron; the corners of those not left out are distinct.
 void measure_edges(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<TetClass>& classes, ShapeStatistics& all, ShapeStatistics& interior,
                    ShapeStatistics& boundary);
 

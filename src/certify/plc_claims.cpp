@@ -222,7 +222,7 @@ std::vector<PlcComparison::OnEdge> PlcComparison::vertices_on_edges() const {
         Box3 box = Box3::of(ends.data(), 2);
         boxes.push_back({box.low - slack, box.high + slack});
     }
-    const BoxTree tree(std::move(boxes));
+    const BoxTree tree(boxes);
     std::vector<std::vector<OnEdge>> parts((mesh_.vertex_count() + kGrain - 1) / kGrain);
     mesh_.workers().for_ranges(mesh_.vertex_count(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {

@@ -63,14 +63,18 @@ struct HullFace {
 bool spans_plane_inside(const SuspectMesh& mesh, const HullFace& plane, const ConstraintTriangle& face, const Tet& tet) {
     const Sign inner_sign = face.tets[0] == kNone ? Sign::negative : Sign::positive;
     const double bound = mesh.predicates().orient3d_bound();
+    // orient3d's determinants, expanded by their last rows: with as many roundings, so that the same bound holds.
+    std::array<double, 4> values{};
+    for (std::size_t i = 0; i < 4; ++i) values[i] = dot(plane.normal, mesh.point(tet[i]) - plane.corner);
     int inner = 0, outer = 0;
-    for (const std::uint32_t v : tet) {
+    for (std::size_t i = 0; i < 4; ++i) {
+        const double inwards = inner_sign == Sign::positive ? values[i] : -values[i];
+        inner += inwards > bound;
+        outer += inwards < -bound;
+        if (std::abs(inwards) > bound) continue;
+        const std::uint32_t v = tet[i];
         if (v == face.v[0] || v == face.v[1] || v == face.v[2]) continue;
-        // orient3d's determinant, expanded by its last row: with as many roundings, so that the same bound holds.
-        const double value = dot(plane.normal, mesh.point(v) - plane.corner);
-        const Sign s = value > bound    ? Sign::positive
-                       : value < -bound ? Sign::negative
-                                        : mesh.predicates().orient3d(mesh.point(face.v[0]), mesh.point(face.v[1]), mesh.point(face.v[2]), mesh.point(v));
+        const Sign s = mesh.predicates().orient3d(mesh.point(face.v[0]), mesh.point(face.v[1]), mesh.point(face.v[2]), mesh.point(v));
         if (s != Sign::zero) ++(s == inner_sign ? inner : outer);
     }
     return inner > 0 && (outer > 0 || inner == 1);
@@ -132,7 +136,7 @@ InsideHull look_inside_hull(const SuspectMesh& mesh, const std::vector<Constrain
     }
     const std::size_t most_pairs = kPairsPerElement * (mesh.tet_count() + hull.size());
     const BoxCover cover(boxes);
-    const BoxTree tree(std::move(boxes));
+    const BoxTree tree(boxes);
     // Either ends the search; then the claim is decided in another way, so that it doesn't matter which was first.
     std::atomic<std::size_t> pairs = 0;
     std::atomic<bool> overlapping = false;
@@ -216,7 +220,7 @@ Claim claim_disjoint(const SuspectMesh& mesh, const BallSearch& search, const st
     std::vector<Box3> boxes;
     boxes.reserve(at_hull.size());
     for (const std::uint32_t t : at_hull) boxes.push_back(box_of(mesh, mesh.mesh().tets[t]));
-    const BoxTree tree(std::move(boxes));
+    const BoxTree tree(boxes);
     look_in_ranges(mesh.workers(), mesh.tet_count(), kGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
         for (std::size_t t = begin; t < end; ++t) {
             std::uint32_t partner = kNone;

@@ -11,7 +11,7 @@
 
 namespace wellmesh::certifying {
 
-/// Which points are where, by hashing; 0 and -0 are one place. O(n) time; 8 bytes a point.
+/// Which points are where, by hashing; 0 and -0 are one place. O(n) time; 12 bytes a point.
 class VertexPlaces {
 public:
     /// @param points  finite; must outlive this.
@@ -20,12 +20,29 @@ public:
     /// The lowest number of a point there; kNone: there is none.
     [[nodiscard]] std::uint32_t first_at(const Vec3& p) const;
 
+    /// Calls visit(point, first) for the points of some buckets that are where a lower one is; `first` is the lowest.
+    [[nodiscard]] std::size_t buckets() const { return first_.size() - 2; }
+    template <class Visit>
+    void for_repetitions(std::size_t begin, std::size_t end, Visit&& visit) const {
+        for (std::size_t b = begin; b < end; ++b)
+            for (std::size_t i = first_[b] + std::size_t{1}; i < first_[b + 1]; ++i)
+                for (std::size_t j = first_[b]; j < i; ++j) {
+                    if (order_[i].tag != order_[j].tag || points_[order_[i].point] != points_[order_[j].point]) continue;
+                    visit(order_[i].point, order_[j].point);
+                    break;
+                }
+    }
+
 private:
-    [[nodiscard]] std::size_t bucket_of(const Vec3& p) const;
+    struct Entry {
+        std::uint32_t point, tag;  ///< the tags of points at one place are equal, of others hardly ever
+    };
+    [[nodiscard]] static std::uint64_t hash_of(const Vec3& p);
 
     const std::vector<Vec3>& points_;
     int shift_ = 0;
-    std::vector<std::uint32_t> first_, order_;  // of each bucket, a power of two of them; ascending in each
+    std::vector<std::uint32_t> first_;  // of each bucket, a power of two of them
+    std::vector<Entry> order_;          // ascending in each
 };
 
 }  // namespace wellmesh::certifying
