@@ -20,8 +20,8 @@ public:
     /// The lowest number of a point there; kNone: there is none.
     [[nodiscard]] std::uint32_t first_at(const Vec3& p) const;
 
-    /// Calls visit(point, first) for the points of some buckets that are where a lower one is; `first` is the lowest.
     [[nodiscard]] std::size_t buckets() const { return first_.size() - 2; }
+    /// Calls visit(point, first) for the points of the buckets from `begin` to before `end` that are where a lower one is; `first` is the lowest.
     template <class Visit>
     void for_repetitions(std::size_t begin, std::size_t end, Visit&& visit) const {
         for (std::size_t b = begin; b < end; ++b)
