@@ -107,6 +107,7 @@ int run(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& r
     std::vector<std::filesystem::path> files;
     WriteOptions write = job.write;
     write.stop = interrupt.token();
+    write.threads = job.options.threads;
     for (const std::string& output : job.outputs) {
         if (interrupt.requested()) throw MeshError(ErrorCode::cancelled, Stage::write, fmt::format("interrupted in stage write, before {} was written", output));
         const auto written = write_mesh(result.mesh, output, write);

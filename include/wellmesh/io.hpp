@@ -48,6 +48,7 @@ struct WriteOptions {
     References references = References::entity;
     bool binary_stl = false;
     bool sync = false;       ///< force the data to the disk before a file appears under its name
+    unsigned threads = 0;    ///< that format, the caller's among them; 0: as many as the machine has cores. Never changes the files
     std::stop_token stop{};  ///< polled while writing; when requested: MeshError{cancelled}, and no file is left
 };
 

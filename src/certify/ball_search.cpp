@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 #include "core/vec3_math.hpp"
 
@@ -42,35 +42,52 @@ struct WeightedEdge {
 
 }  // namespace
 
-BallSearch::BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights)
-    : originals_(&points), weights_(weights.empty() ? nullptr : &weights), order_(points.size()) {
+BallSearch::BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights) {
+    Workers alone;
+    *this = BallSearch(points, weights, alone);
+}
+
+BallSearch::BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights, Workers& workers)
+    : originals_(&points), weights_(weights.empty() ? nullptr : &weights), points_(points.size()) {
     double largest = 0;
     for (const Vec3& p : points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     if (largest > 0) scale_ = std::ldexp(1.0, -std::ilogb(largest) - 1);
     if (weights_ != nullptr) largest_weight_ = scale_ * *std::max_element(weights.begin(), weights.end()) * scale_;
-    std::iota(order_.begin(), order_.end(), 0U);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    root_ = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        points_[i] = {scale_ * points[i], static_cast<std::uint32_t>(i)};
+        for (std::size_t k = 0; k < 3; ++k) {
+            root_.low[k] = std::min(root_.low[k], coordinate(points_[i].at, k));
+            root_.high[k] = std::max(root_.high[k], coordinate(points_[i].at, k));
+        }
+    }
     std::size_t nodes = 1;
     for (std::size_t n = points.size(); n > kLeaf; n = n - n / 2) nodes = 2 * nodes + 1;
     axes_.assign(nodes, 0);
     cuts_.assign(nodes, 0);
-    build(0, order_.size(), 0);
-    points_.reserve(points.size());
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    root_ = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-    for (const std::uint32_t v : order_) {
-        points_.push_back(scale_ * points[v]);
-        for (std::size_t k = 0; k < 3; ++k) {
-            root_.low[k] = std::min(root_.low[k], coordinate(points_.back(), k));
-            root_.high[k] = std::max(root_.high[k], coordinate(points_.back(), k));
+    // Level by level to where there are enough nodes for all threads, then each of these to its leaves.
+    struct Node {
+        std::size_t begin, end, node;
+    };
+    std::vector<Node> level{{0, points_.size(), 0}};
+    for (int depth = 0; depth < 6 && level.front().end - level.front().begin > 64 * kLeaf; ++depth) {
+        workers.for_each(level.size(), [&](std::size_t i) { split(level[i].begin, level[i].end, level[i].node); });
+        std::vector<Node> next;
+        for (const auto& [begin, end, node] : level) {
+            const std::size_t middle = begin + (end - begin) / 2;
+            next.push_back({begin, middle, 2 * node + 1});
+            next.push_back({middle, end, 2 * node + 2});
         }
+        level = std::move(next);
     }
+    workers.for_each(level.size(), [&](std::size_t i) { build(level[i].begin, level[i].end, level[i].node); });
 }
 
-void BallSearch::build(std::size_t begin, std::size_t end, std::size_t node) {
-    if (end - begin <= kLeaf) return;
-    Vec3 low = (*originals_)[order_[begin]], high = low;
+void BallSearch::split(std::size_t begin, std::size_t end, std::size_t node) {
+    Vec3 low = points_[begin].at, high = low;
     for (std::size_t i = begin; i < end; ++i) {
-        const Vec3& p = (*originals_)[order_[i]];
+        const Vec3& p = points_[i].at;
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
@@ -78,10 +95,18 @@ void BallSearch::build(std::size_t begin, std::size_t end, std::size_t node) {
     const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     axes_[node] = static_cast<std::uint8_t>(axis);
     const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(begin), at(middle), at(end),
-                     [&](std::uint32_t p, std::uint32_t q) { return coordinate((*originals_)[p], axis) < coordinate((*originals_)[q], axis); });
-    cuts_[node] = scale_ * coordinate((*originals_)[order_[middle]], axis);
+    const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto sort_by = [&](double Vec3::* x) { std::nth_element(at(begin), at(middle), at(end), [x](const Point& p, const Point& q) { return p.at.*x < q.at.*x; }); };
+    if (axis == 0) sort_by(&Vec3::x);
+    else if (axis == 1) sort_by(&Vec3::y);
+    else sort_by(&Vec3::z);
+    cuts_[node] = coordinate(points_[middle].at, axis);
+}
+
+void BallSearch::build(std::size_t begin, std::size_t end, std::size_t node) {
+    if (end - begin <= kLeaf) return;
+    split(begin, end, node);
+    const std::size_t middle = begin + (end - begin) / 2;
     build(begin, middle, 2 * node + 1);
     build(middle, end, 2 * node + 2);
 }
@@ -139,41 +164,51 @@ namespace {
 
 enum class Verdict : std::uint8_t { outside, meets, unsure };
 
-/// Whether the ball meets the box. `low` and `high` are its corners' differences from the base.
+/// The least of the form's share of one axis over the interval of these ends, differences from the base, and how wrong it may be.
 template <class Real>
-Verdict where(const BallForm<Real>& form, const std::array<Real, 3>& low, const std::array<Real, 3>& high) {
+std::array<Real, 2> least_along(const BallForm<Real>& form, std::size_t k, Real low, Real high) {
     constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
-    Real lowest = 0, slack = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        // Rounding of the interval's ends: relative to their size, covered by the roundings in a_low and n_error.
-        const auto parabola = [&](Real x) { return (form.a_low * x - form.n[k]) * x; };
-        Real least = std::min(parabola(low[k]), parabola(high[k]));
-        const Real bottom = form.a_low > 0 ? form.n[k] / (2 * form.a_low) : 0;
-        if (form.a_low > 0 && low[k] < bottom && bottom < high[k]) least = -form.n[k] * bottom / 2;
-        lowest += least;
-        // The bottom's own rounding and that of the sum: relative to the terms, of which n x is the larger where f is near 0.
-        slack += (form.n_error[k] + 16 * kRounding * std::abs(form.n[k])) * std::max(std::abs(low[k]), std::abs(high[k]));
-    }
-    lowest -= form.allowance;
+    // Rounding of the interval's ends: relative to their size, covered by the roundings in a_low and n_error.
+    const auto parabola = [&](Real x) { return (form.a_low * x - form.n[k]) * x; };
+    Real least = std::min(parabola(low), parabola(high));
+    const Real bottom = form.a_low > 0 ? form.n[k] / (2 * form.a_low) : 0;
+    if (form.a_low > 0 && low < bottom && bottom < high) least = -form.n[k] * bottom / 2;
+    // The bottom's own rounding and that of the sum: relative to the terms, of which n x is the larger where f is near 0.
+    return {least, (form.n_error[k] + 16 * kRounding * std::abs(form.n[k])) * std::max(std::abs(low), std::abs(high))};
+}
+
+/// Whether the ball meets the box, from what its axes add.
+template <class Real>
+Verdict where(const BallForm<Real>& form, const std::array<Real, 3>& least, const std::array<Real, 3>& slacks) {
+    const Real lowest = (least[0] + least[1] + least[2]) - form.allowance, slack = slacks[0] + slacks[1] + slacks[2];
     return lowest > slack ? Verdict::outside : lowest < -slack ? Verdict::meets : Verdict::unsure;
 }
 
 }  // namespace
 
-bool BallSearch::excludes(const Ball& ball, const Box& box) {
-    const std::array<double, 3> base{ball.base.x, ball.base.y, ball.base.z};
-    std::array<double, 3> low{}, high{};
+void BallSearch::Bounds::update(const Ball& ball, std::size_t axis) {
+    const double base = coordinate(ball.base, axis);
+    const auto [lowest, error] = least_along(ball.rough, axis, box.low[axis] - base, box.high[axis] - base);
+    least[axis] = lowest;
+    slack[axis] = error;
+}
+
+bool BallSearch::excludes(const Ball& ball, const Bounds& bounds) {
+    if (const Verdict rough = where(ball.rough, bounds.least, bounds.slack); rough != Verdict::unsure) return rough == Verdict::outside;
+    std::array<Long, 3> least{}, slack{};
     for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = box.low[k] - base[k];
-        high[k] = box.high[k] - base[k];
+        const auto base = static_cast<Long>(coordinate(ball.base, k));
+        const auto [lowest, error] = least_along(ball.close, k, static_cast<Long>(bounds.box.low[k]) - base, static_cast<Long>(bounds.box.high[k]) - base);
+        least[k] = lowest;
+        slack[k] = error;
     }
-    if (const Verdict rough = where(ball.rough, low, high); rough != Verdict::unsure) return rough == Verdict::outside;
-    std::array<Long, 3> close_low{}, close_high{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        close_low[k] = static_cast<Long>(box.low[k]) - static_cast<Long>(base[k]);
-        close_high[k] = static_cast<Long>(box.high[k]) - static_cast<Long>(base[k]);
-    }
-    return where(ball.close, close_low, close_high) == Verdict::outside;
+    return where(ball.close, least, slack) == Verdict::outside;
+}
+
+bool BallSearch::excludes(const Ball& ball, const Vec3& point) {
+    Bounds bounds{{{point.x, point.y, point.z}, {point.x, point.y, point.z}}, {}, {}};
+    for (std::size_t axis = 0; axis < 3; ++axis) bounds.update(ball, axis);
+    return excludes(ball, bounds);
 }
 
 double BallSearch::depth(const Ball& ball, std::uint32_t vertex) const {

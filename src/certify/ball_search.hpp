@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/workers.hpp"
 #include "wellmesh/predicates.hpp"
 #include "wellmesh/vec3.hpp"
 
@@ -47,6 +48,7 @@ class BallSearch {
 public:
     /// @param weights  of all points, or empty. Both must outlive this.
     explicit BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights = {});
+    BallSearch(const std::vector<Vec3>& points, const std::vector<double>& weights, Workers& workers);
 
     [[nodiscard]] Ball circumball(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d) const;
     [[nodiscard]] Ball equatorial_ball(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c) const;
@@ -55,7 +57,10 @@ public:
     /// Calls visit(vertex) for a superset of the vertices strictly inside the ball, or in conflict, until it returns true. @return whether it did.
     template <class Visit>
     bool any_in(const Ball& ball, Visit&& visit) const {
-        return !order_.empty() && search(ball, 0, order_.size(), 0, root_, visit);
+        if (points_.empty()) return false;
+        Bounds bounds{root_, {}, {}};
+        for (std::size_t axis = 0; axis < 3; ++axis) bounds.update(ball, axis);
+        return search(ball, 0, points_.size(), 0, bounds, visit);
     }
 
     /// By how much the vertex is inside, as a fraction of the squared radius: 1 - |p - centre|^2 / R^2, rounded (64 bits of mantissa
@@ -66,32 +71,47 @@ private:
     struct Box {
         std::array<double, 3> low, high;
     };
+    struct Point {
+        Vec3 at;  // scaled
+        std::uint32_t number;
+    };
     static constexpr std::size_t kLeaf = 8;
 
     template <class Real>
     [[nodiscard]] BallForm<Real> form(long double a, const std::array<long double, 3>& n, long double a_error, long double n_error, long double largest_difference) const;
     [[nodiscard]] Ball finish(const WeightedPoint& base, long double a, const std::array<long double, 3>& n, long double a_scale, long double n_scale) const;
+    /// Of one node, not of those below.
+    void split(std::size_t begin, std::size_t end, std::size_t node);
     void build(std::size_t begin, std::size_t end, std::size_t node);
-    [[nodiscard]] static bool excludes(const Ball& ball, const Box& box);
-    [[nodiscard]] static bool excludes(const Ball& ball, const Vec3& point) { return excludes(ball, {{point.x, point.y, point.z}, {point.x, point.y, point.z}}); }
+    [[nodiscard]] static bool excludes(const Ball& ball, const Vec3& point);
+
+    /// A box, and for each axis the least that the rough form adds over it, and how wrong that may be: a cut changes one of the three.
+    struct Bounds {
+        Box box;
+        std::array<double, 3> least, slack;
+        void update(const Ball& ball, std::size_t axis);
+    };
+    [[nodiscard]] static bool excludes(const Ball& ball, const Bounds& bounds);
 
     template <class Visit>
-    bool search(const Ball& ball, std::size_t begin, std::size_t end, std::size_t node, const Box& box, Visit& visit) const {
+    bool search(const Ball& ball, std::size_t begin, std::size_t end, std::size_t node, const Bounds& bounds, Visit& visit) const {
         if (end - begin <= kLeaf) {
             for (std::size_t i = begin; i < end; ++i)
-                if (!excludes(ball, points_[i]) && visit(order_[i])) return true;
+                if (!excludes(ball, points_[i].at) && visit(points_[i].number)) return true;
             return false;
         }
         const std::size_t middle = begin + (end - begin) / 2, axis = axes_[node];
         const double cut = cuts_[node];
-        Box near = box, far = box;
-        near.high[axis] = far.low[axis] = cut;
+        Bounds near = bounds;
         std::size_t near_begin = begin, near_end = middle, near_node = 2 * node + 1, far_begin = middle, far_end = end, far_node = 2 * node + 2;
-        if (coordinate(ball.base, axis) > cut) {  // the corner's side first: what is inside is mostly near the simplex
-            std::swap(near, far);
-            std::swap(near_begin, far_begin), std::swap(near_end, far_end), std::swap(near_node, far_node);
-        }
+        const bool upper_first = coordinate(ball.base, axis) > cut;  // the corner's side first: what is inside is mostly near the simplex
+        if (upper_first) std::swap(near_begin, far_begin), std::swap(near_end, far_end), std::swap(near_node, far_node);
+        (upper_first ? near.box.low : near.box.high)[axis] = cut;
+        near.update(ball, axis);
         if (!excludes(ball, near) && search(ball, near_begin, near_end, near_node, near, visit)) return true;
+        Bounds far = bounds;
+        (upper_first ? far.box.high : far.box.low)[axis] = cut;
+        far.update(ball, axis);
         return !excludes(ball, far) && search(ball, far_begin, far_end, far_node, far, visit);
     }
     [[nodiscard]] static double coordinate(const Vec3& p, std::size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
@@ -100,8 +120,7 @@ private:
     const std::vector<Vec3>* originals_;
     const std::vector<double>* weights_;  // null: none
     double largest_weight_ = 0;           // scaled
-    std::vector<std::uint32_t> order_;  // a node's points are contiguous, its first half before its cut
-    std::vector<Vec3> points_;          // scaled, in this order
+    std::vector<Point> points_;         // a node's are contiguous, its first half before its cut
     std::vector<std::uint8_t> axes_;    // of each inner node, heap numbering
     std::vector<double> cuts_;          // scaled: a coordinate of the first half is at most this, of the second at least
     Box root_{};

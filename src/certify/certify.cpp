@@ -5,9 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,11 +14,13 @@
 #include "certify/mesh_faces.hpp"
 #include "certify/plc_claims.hpp"
 #include "certify/shape_claims.hpp"
+#include "certify/shape_survey.hpp"
 #include "certify/space_claims.hpp"
 #include "certify/suspect_mesh.hpp"
+#include "certify/tets_by_corner.hpp"
+#include "certify/vertex_places.hpp"
 #include "core/vec3_math.hpp"
 #include "predicates/exact_range.hpp"
-#include "quality/tet_shape.hpp"
 
 namespace wellmesh {
 namespace {
@@ -45,7 +46,7 @@ Claim claim_numbers(const TetMesh& mesh) {
     const auto look = [&](const auto& elements, EntityKind kind) {
         claim.checked(elements.size());
         for (std::size_t i = 0; i < elements.size(); ++i)
-            if (std::any_of(elements[i].begin(), elements[i].end(), [&](std::uint32_t v) { return v >= mesh.vertices.size(); }))
+            if (*std::max_element(elements[i].begin(), elements[i].end()) >= mesh.vertices.size())
                 claim.violated(kind, i + 1, Vec3{}, [&] { return fmt::format("{} {} names a vertex beyond the last, {}", to_string(kind), i + 1, mesh.vertices.size()); });
     };
     look(mesh.tets, EntityKind::tetrahedron);
@@ -68,43 +69,40 @@ Claim claim_numbers(const TetMesh& mesh) {
 Claim claim_positive(const SuspectMesh& mesh) {
     ClaimBuilder claim("positive_tets", "Every tetrahedron is positively oriented and has a volume.");
     claim.checked(mesh.tet_count());
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        if (mesh.positive(t)) continue;
-        claim.violated(EntityKind::tetrahedron, t + 1, mesh.tet_centroid(t), [&] {
-            const auto& v = mesh.mesh().tets[t];
-            const bool flat = orient3d(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) == Sign::zero;
-            return fmt::format("vertices {} {} {} {} make {} tetrahedron", v[0] + 1, v[1] + 1, v[2] + 1, v[3] + 1, flat ? "a flat" : "an inverted");
-        });
-    }
+    look_in_ranges(mesh.workers(), mesh.tet_count(), kGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
+        for (std::size_t t = begin; t < end; ++t) {
+            if (mesh.positive(t)) continue;
+            part.violated(EntityKind::tetrahedron, t + 1, mesh.tet_centroid(t), [&] {
+                const auto& v = mesh.mesh().tets[t];
+                const bool flat = orient3d(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) == Sign::zero;
+                return fmt::format("vertices {} {} {} {} make {} tetrahedron", v[0] + 1, v[1] + 1, v[2] + 1, v[3] + 1, flat ? "a flat" : "an inverted");
+            });
+        }
+    });
     return claim.decided();
 }
 
-Claim claim_distinct_vertices(const SuspectMesh& mesh) {
+Claim claim_distinct_vertices(const SuspectMesh& mesh, const VertexPlaces& places) {
     ClaimBuilder claim("distinct_vertices", "No two vertices are at one place.");
     claim.checked(mesh.vertex_count());
-    const std::vector<Vec3>& points = mesh.points();
-    std::vector<std::uint32_t> order(points.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return lexicographically_less(points[a], points[b]) || (points[a] == points[b] && a < b); });
-    std::uint32_t first = 0;
-    for (std::size_t i = 1; i < order.size(); ++i) {
-        if (points[order[i]] != points[order[i - 1]]) {
-            first = static_cast<std::uint32_t>(i);
-            continue;
-        }
-        claim.violated(EntityKind::vertex, order[i] + std::uint64_t{1}, points[order[i]], [&] { return fmt::format("vertex {} is where vertex {} is", order[i] + 1, order[first] + 1); });
-    }
+    look_in_ranges(mesh.workers(), places.buckets(), kGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
+        places.for_repetitions(begin, end, [&](std::uint32_t v, std::uint32_t first) {
+            part.violated(EntityKind::vertex, v + std::uint64_t{1}, mesh.points()[v], [&] { return fmt::format("vertex {} is where vertex {} is", v + 1, first + 1); });
+        });
+    });
     return claim.decided();
 }
 
 Claim claim_used_vertices(const SuspectMesh& mesh) {
     ClaimBuilder claim("used_vertices", "Every vertex belongs to a tetrahedron.");
     claim.checked(mesh.vertex_count());
-    std::vector<bool> used(mesh.vertex_count(), false);
-    for (const auto& tet : mesh.mesh().tets)
-        for (const std::uint32_t v : tet) used[v] = true;
+    std::vector<std::uint8_t> used(mesh.vertex_count(), 0);
+    mesh.workers().for_ranges(mesh.tet_count(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t t = begin; t < end; ++t)
+            for (const std::uint32_t v : mesh.mesh().tets[t]) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
+    });
     for (std::size_t v = 0; v < used.size(); ++v)
-        if (!used[v]) claim.violated(EntityKind::vertex, v + 1, mesh.points()[v], [&] { return fmt::format("vertex {} belongs to none", v + 1); });
+        if (used[v] == 0) claim.violated(EntityKind::vertex, v + 1, mesh.points()[v], [&] { return fmt::format("vertex {} belongs to none", v + 1); });
     return claim.decided();
 }
 
@@ -120,21 +118,6 @@ Claim claim_conservation(const SuspectMesh& mesh, const FaceSurvey& faces) {
     return result;
 }
 
-void measure_regions(const SuspectMesh& mesh, Certificate& certificate) {
-    struct Sum {
-        std::uint64_t tets = 0;
-        long double volume = 0;
-    };
-    std::map<std::int32_t, Sum> sums;
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        const auto& v = mesh.mesh().tets[t];
-        Sum& sum = sums[mesh.region(t)];
-        ++sum.tets;
-        sum.volume += static_cast<long double>(six_volumes(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])));
-    }
-    for (const auto& [region, sum] : sums) certificate.regions.push_back({region, sum.tets, static_cast<double>(sum.volume / 6), std::nullopt});
-}
-
 bool broken(const Claim& claim) { return claim.state == Claim::State::refuted; }
 
 /// Thrown between claims, caught in certify().
@@ -146,14 +129,16 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
         if (options.stop.stop_requested()) throw Stopped{};
     };
     poll();
-    const Claim positive = claim_positive(mesh), distinct = claim_distinct_vertices(mesh), used = claim_used_vertices(mesh);
-    FaceSurvey faces = survey_faces(mesh);
+    const VertexPlaces places(mesh.points(), mesh.workers());
+    const Claim positive = claim_positive(mesh), distinct = claim_distinct_vertices(mesh, places), used = claim_used_vertices(mesh);
+    const TetsByCorner stars(mesh);
+    FaceSurvey faces = survey_faces(mesh, stars);
     poll();
     const bool faces_in_order = !broken(positive) && !broken(faces.face_sharing) && !broken(faces.opposite_sides);
-    const BallSearch search(mesh.points(), mesh.weights());
+    const BallSearch search(mesh.points(), mesh.weights(), mesh.workers());
     const Claim disjoint = claim_disjoint(mesh, search, faces.constraints, faces_in_order);
     claims.insert(claims.end(), {positive, faces.face_sharing, faces.opposite_sides, faces.distinct_tets, disjoint, claim_conservation(mesh, faces), distinct, used,
-                                 faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh)});
+                                 faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh, stars)});
     poll();
     const GabrielFindings subfaces = claim_gabriel_subfaces(mesh, search, faces.constraints);
     poll();
@@ -163,10 +148,11 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
     poll();
     claims.push_back(claim_gabriel_subsegments(mesh, search, find_constraint_segments(mesh, faces.constraints, options.flat_angle_rad)));
     poll();
-    measure_regions(mesh, certificate);
-    append_plc_claims(mesh, faces.constraints, options, plc, certificate);
+    certificate.regions = measure_regions(mesh);
+    append_plc_claims({mesh, stars, places, faces.constraints}, options, plc, certificate);
     poll();
-    append_shape_claims(mesh, faces.constraints, options, certificate);
+    const std::vector<Claim> about_shape = shape_claims(mesh, stars, faces.constraints, options, certificate);
+    claims.insert(claims.end(), about_shape.begin(), about_shape.end());
 }
 
 /// The other claims need coordinates to compute with and vertices to look up.
@@ -189,7 +175,7 @@ Certificate certify(const TetMesh& mesh, const CertifyOptions& options, const Pl
     std::string reason = "the mesh has unusable numbers or coordinates, or no tetrahedron";
     if (usable(mesh, certificate)) {
         try {
-            append_geometric_claims(SuspectMesh(mesh), options, plc, certificate);
+            append_geometric_claims(SuspectMesh(mesh, options.threads), options, plc, certificate);
             return certificate;
         } catch (const Stopped&) {
             reason = "the check was stopped";
@@ -211,7 +197,8 @@ void measure_shape(const TetMesh& mesh, Certificate& certificate) {
     Certificate scratch;
     if (!usable(mesh, scratch)) return;
     const SuspectMesh suspect(mesh);
-    measure_shapes(suspect, survey_faces(suspect).constraints, certificate);
+    const TetsByCorner stars(suspect);
+    measure_shapes(suspect, stars, survey_faces(suspect, stars).constraints, certificate);
 }
 
 }  // namespace wellmesh

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The faces of the mesh, found by sorting: who shares what, and which faces are constraints.
+// The faces of the mesh, found at their lowest vertices: who shares what, and which faces are constraints.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "certify/suspect_mesh.hpp"
+#include "certify/tets_by_corner.hpp"
 
 namespace wellmesh::certifying {
 
@@ -18,8 +19,8 @@ struct FaceSurvey {
     Claim face_sharing, opposite_sides, distinct_tets, listed_subfaces_exist;
 };
 
-/// O(n log n) time; about 70 bytes a tetrahedron of scratch memory, freed on return.
-[[nodiscard]] FaceSurvey survey_faces(const SuspectMesh& mesh);
+/// O(n) time on graded meshes.
+[[nodiscard]] FaceSurvey survey_faces(const SuspectMesh& mesh, const TetsByCorner& stars);
 
 /// Edges where constraint triangles meet other than as two that are flat together, and all listed ones; ascending, each once.
 ///
@@ -31,10 +32,7 @@ struct ConstraintSegment {
 };
 [[nodiscard]] std::vector<ConstraintSegment> find_constraint_segments(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, double flat_angle);
 
-/// Edges, ascending and without repetition, of tetrahedra, both ends of which are `wanted` (one flag a vertex).
-[[nodiscard]] std::vector<Edge> edges_between(const SuspectMesh& mesh, const std::vector<bool>& wanted);
-
 /// Listed edges that no tetrahedron has.
-[[nodiscard]] Claim claim_listed_subsegments_exist(const SuspectMesh& mesh);
+[[nodiscard]] Claim claim_listed_subsegments_exist(const SuspectMesh& mesh, const TetsByCorner& stars);
 
 }  // namespace wellmesh::certifying

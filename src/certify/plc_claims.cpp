@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,80 +37,82 @@ ClaimBuilder builder(std::size_t which) { return {kStatements[which][0], kStatem
 double area_of(const Corners& t) { return norm(cross(t[1] - t[0], t[2] - t[0])) / 2; }
 Vec3 centroid_of(const Corners& t) { return t[0] + (1.0 / 3) * ((t[1] - t[0]) + (t[2] - t[0])); }
 
-/// Mesh vertices by place.
-class VertexFinder {
-public:
-    explicit VertexFinder(const std::vector<Vec3>& points) : points_(points), order_(points.size()) {
-        std::iota(order_.begin(), order_.end(), 0U);
-        std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return lexicographically_less(points[a], points[b]); });
-    }
-    [[nodiscard]] bool has(const Vec3& p) const {
-        const auto it = std::lower_bound(order_.begin(), order_.end(), p, [&](std::uint32_t v, const Vec3& q) { return lexicographically_less(points_[v], q); });
-        return it != order_.end() && points_[*it] == p;
-    }
-
-private:
-    const std::vector<Vec3>& points_;
-    std::vector<std::uint32_t> order_;
-};
-
 class PlcComparison {
 public:
-    PlcComparison(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, const PlcSurface& surface)
-        : mesh_(mesh), constraints_(triangles), surface_(surface), tolerance_(options.tolerance * surface.diagonal), relative_tolerance_(options.tolerance) {
+    PlcComparison(const SurveyedMesh& surveyed, const CertifyOptions& options, const PlcSurface& surface)
+        : mesh_(surveyed.mesh), stars_(surveyed.stars), places_(surveyed.places), constraints_(surveyed.triangles), surface_(surface),
+          tolerance_(options.tolerance * surface.diagonal), relative_tolerance_(options.tolerance) {
         std::vector<Corners> all, hull, separating;
-        all.reserve(triangles.size());
-        for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-            const ConstraintTriangle& t = triangles[i];
-            all.push_back({mesh.point(t.v[0]), mesh.point(t.v[1]), mesh.point(t.v[2])});
+        all.reserve(constraints_.size());
+        for (std::uint32_t i = 0; i < constraints_.size(); ++i) {
+            const ConstraintTriangle& t = constraints_[i];
+            all.push_back({mesh_.point(t.v[0]), mesh_.point(t.v[1]), mesh_.point(t.v[2])});
             if (t.on_hull) hull.push_back(all.back());
-            if (!t.is_face || (!t.on_hull && mesh.region(t.tets[0]) == mesh.region(t.tets[1]))) continue;
+            if (!t.is_face || (!t.on_hull && mesh_.region(t.tets[0]) == mesh_.region(t.tets[1]))) continue;
             separating.push_back(all.back());
             separating_.push_back(i);
         }
-        covered_ = TriangleTree(std::move(all));
-        separators_ = TriangleTree(std::move(separating));
-        hull_ = TriangleTree(std::move(hull));
+        // Mostly they are the same: every constraint triangle is on the hull.
+        covered_ = std::make_shared<const TriangleTree>(std::move(all));
+        const auto tree_of = [&](std::vector<Corners>&& triangles) {
+            return triangles.size() == constraints_.size() ? covered_ : std::make_shared<const TriangleTree>(std::move(triangles));
+        };
+        separators_ = tree_of(std::move(separating));
+        hull_ = tree_of(std::move(hull));
         facet_wanted_.assign(surface.facets.empty() ? 0 : surface.facets.back() + std::size_t{1}, false);
-        for (std::size_t i = 0; i < surface.facets.size(); ++i) {
-            const Vec3 c = centroid_of(surface.triangles.triangles()[i]);
-            const bool near = near_constraint(c);
-            triangles_.push_back(near ? Part::covered : inside(c) ? Part::missing : Part::outside);
-            if (triangles_.back() != Part::outside) facet_wanted_[surface.facets[i]] = true;
-        }
+        triangles_.resize(surface.facets.size());
+        mesh_.workers().for_ranges(triangles_.size(), kSmallGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Vec3 c = centroid_of(surface.triangles.triangles()[i]);
+                triangles_[i] = near_constraint(c) ? Part::covered : inside(c) ? Part::missing : Part::outside;
+            }
+        });
+        for (std::size_t i = 0; i < triangles_.size(); ++i)
+            if (triangles_[i] != Part::outside) facet_wanted_[surface.facets[i]] = true;
     }
 
     Claim distance() const {
         ClaimBuilder claim = builder(0);
         claim.checked(constraints_.size());
-        double worst = 0, worst_vertex = 0;
-        std::uint64_t far_vertices = 0;
-        std::uint32_t hint = 0;
+        struct Worst {
+            double of_all = 0, of_vertex = 0;
+            std::uint64_t far_vertices = 0;
+        };
+        std::vector<Worst> parts((constraints_.size() + kSmallGrain - 1) / kSmallGrain);
+        const std::vector<std::uint8_t> new_corners = find_new_corners();
         const double rounding = 4 * std::numeric_limits<double>::epsilon() * mesh_.largest_coordinate();
-        std::vector<bool> seen(mesh_.vertex_count(), false);
-        for (std::size_t i = 0; i < constraints_.size(); ++i) {
-            const ConstraintTriangle& t = constraints_[i];
-            const auto& [a, b, c] = covered_.triangles()[i];
-            const std::array<Vec3, 7> probes{a, b, c, a + 0.5 * (b - a), b + 0.5 * (c - b), c + 0.5 * (a - c), centroid_of({a, b, c})};
-            double off = 0;
-            std::size_t where = 0;
-            for (std::size_t k = 0; k < probes.size(); ++k) {
-                const auto nearest = surface_.triangles.nearest(probes[k], hint);
-                hint = nearest.triangle;
-                if (nearest.distance > off) off = nearest.distance, where = k;
-                if (k >= 3 || seen[t.v[k]]) continue;
-                seen[t.v[k]] = true;
-                far_vertices += nearest.distance > rounding;
-                worst_vertex = std::max(worst_vertex, nearest.distance);
+        look_in_ranges(mesh_.workers(), constraints_.size(), kSmallGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
+            Worst& worst = parts[begin / kSmallGrain];
+            std::uint32_t hint = 0;
+            for (std::size_t i = begin; i < end; ++i) {
+                const ConstraintTriangle& t = constraints_[i];
+                const auto& [a, b, c] = covered_->triangles()[i];
+                const std::array<Vec3, 7> probes{a, b, c, a + 0.5 * (b - a), b + 0.5 * (c - b), c + 0.5 * (a - c), centroid_of({a, b, c})};
+                double off = 0;
+                std::size_t where = 0;
+                for (std::size_t k = 0; k < probes.size(); ++k) {
+                    const auto nearest = surface_.triangles.nearest(probes[k], hint);
+                    hint = nearest.triangle;
+                    if (nearest.distance > off) off = nearest.distance, where = k;
+                    if (k >= 3 || (new_corners[i] >> k & 1) == 0) continue;
+                    worst.far_vertices += nearest.distance > rounding;
+                    worst.of_vertex = std::max(worst.of_vertex, nearest.distance);
+                }
+                worst.of_all = std::max(worst.of_all, off);
+                if (off > tolerance_)
+                    part.violated(EntityKind::triangle, t.listed == kNone ? 0 : t.listed + std::uint64_t{1}, probes[where], [&] {
+                        return fmt::format("triangle {} {} {} is {:.3g} away from the PLC, {:.3g} of its diagonal", t.v[0] + 1, t.v[1] + 1, t.v[2] + 1, off, off / surface_.diagonal);
+                    });
             }
-            worst = std::max(worst, off);
-            if (off > tolerance_)
-                claim.violated(EntityKind::triangle, t.listed == kNone ? 0 : t.listed + std::uint64_t{1}, probes[where], [&] {
-                    return fmt::format("triangle {} {} {} is {:.3g} away from the PLC, {:.3g} of its diagonal", t.v[0] + 1, t.v[1] + 1, t.v[2] + 1, off, off / surface_.diagonal);
-                });
+        });
+        Worst worst;
+        for (const Worst& part : parts) {
+            worst.of_all = std::max(worst.of_all, part.of_all);
+            worst.of_vertex = std::max(worst.of_vertex, part.of_vertex);
+            worst.far_vertices += part.far_vertices;
         }
-        claim.note(fmt::format("largest distance {:.3g}, {:.3g} of the diagonal, tolerance {:g}", worst, worst / surface_.diagonal, relative_tolerance_));
-        claim.note(fmt::format("of a vertex {:.3g}; {} vertices are more than 4 ulp of the largest coordinate away", worst_vertex, far_vertices));
+        claim.note(fmt::format("largest distance {:.3g}, {:.3g} of the diagonal, tolerance {:g}", worst.of_all, worst.of_all / surface_.diagonal, relative_tolerance_));
+        claim.note(fmt::format("of a vertex {:.3g}; {} vertices are more than 4 ulp of the largest coordinate away", worst.of_vertex, worst.far_vertices));
         return claim.decided();
     }
 
@@ -124,7 +126,7 @@ public:
             (triangles_[i] == Part::outside ? removed : wanted) += static_cast<long double>(area_of(triangles[i]));
             if (triangles_[i] == Part::missing && !uncovered) uncovered = i;
         }
-        for (const Corners& t : covered_.triangles()) present += static_cast<long double>(area_of(t));
+        for (const Corners& t : covered_->triangles()) present += static_cast<long double>(area_of(t));
         const long double error = std::abs(present - wanted) / wanted;
         const auto allowed = static_cast<long double>(1e3 * relative_tolerance_);
         if (!(error <= allowed)) {
@@ -141,11 +143,10 @@ public:
 
     Claim vertices(bool isolated, std::uint32_t first_number) const {
         ClaimBuilder claim = builder(isolated ? 4 : 2);
-        const VertexFinder finder(mesh_.points());
         for (const std::uint32_t v : isolated ? surface_.other_vertices : surface_.facet_vertices) {
             const Vec3& p = surface_.points[v];
             claim.checked(1);
-            if (!finder.has(p) && (near_constraint(p) || inside(p)))
+            if (places_.first_at(p) == kNone && (near_constraint(p) || inside(p)))
                 claim.violated(EntityKind::vertex, std::uint64_t{v} + first_number, p, [&] { return fmt::format("PLC vertex {} at {} is missing", v + first_number, text_of(p)); });
         }
         return claim.decided();
@@ -184,16 +185,30 @@ private:
         friend bool operator<(const OnEdge& a, const OnEdge& b) { return std::tie(a.edge, a.at, a.vertex) < std::tie(b.edge, b.at, b.vertex); }
     };
     [[nodiscard]] std::vector<OnEdge> vertices_on_edges() const;
+    /// Of each constraint triangle, which corners (bits) no earlier one has.
+    [[nodiscard]] std::vector<std::uint8_t> find_new_corners() const {
+        std::vector<bool> seen(mesh_.vertex_count(), false);
+        std::vector<std::uint8_t> result(constraints_.size(), 0);
+        for (std::size_t i = 0; i < constraints_.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t v = constraints_[i].v[k];
+                if (!seen[v]) result[i] = static_cast<std::uint8_t>(result[i] | 1U << k);
+                seen[v] = true;
+            }
+        return result;
+    }
 
-    [[nodiscard]] bool near_constraint(const Vec3& p) const { return !constraints_.empty() && covered_.nearest(p).distance <= tolerance_; }
+    [[nodiscard]] bool near_constraint(const Vec3& p) const { return !constraints_.empty() && covered_->nearest(p).distance <= tolerance_; }
     /// A point on a hull edge in every direction counts as inside.
-    [[nodiscard]] bool inside(const Vec3& p) const { return hull_.encloses(p).value_or(true); }
+    [[nodiscard]] bool inside(const Vec3& p) const { return hull_->encloses(p).value_or(true); }
 
     const SuspectMesh& mesh_;
+    const TetsByCorner& stars_;
+    const VertexPlaces& places_;
     const std::vector<ConstraintTriangle>& constraints_;
     const PlcSurface& surface_;
     double tolerance_, relative_tolerance_;
-    TriangleTree covered_, hull_, separators_;
+    std::shared_ptr<const TriangleTree> covered_, hull_, separators_;
     std::vector<std::uint32_t> separating_;  ///< of each triangle of separators_, the constraint: on the hull or between two regions
     std::vector<Part> triangles_;
     std::vector<bool> facet_wanted_;  ///< some triangle of it is not outside the mesh; facets without triangles may be beyond the end
@@ -207,23 +222,27 @@ std::vector<PlcComparison::OnEdge> PlcComparison::vertices_on_edges() const {
         Box3 box = Box3::of(ends.data(), 2);
         boxes.push_back({box.low - slack, box.high + slack});
     }
-    const BoxTree tree(std::move(boxes));
-    std::vector<OnEdge> result;
-    for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) {
-        const Vec3& p = mesh_.point(v);
-        tree.any_meeting({p, p}, [&](std::uint32_t i) {
-            const Vec3& a = surface_.points[surface_.edges[i].a];
-            const Vec3& b = surface_.points[surface_.edges[i].b];
-            // The ends count by place, not by distance; nothing else does near them.
-            if (p == a || p == b) {
-                result.push_back({i, p == a ? 0.0 : 1.0, v});
+    const BoxTree tree(boxes);
+    std::vector<std::vector<OnEdge>> parts((mesh_.vertex_count() + kGrain - 1) / kGrain);
+    mesh_.workers().for_ranges(mesh_.vertex_count(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
+            const Vec3& p = mesh_.point(v);
+            tree.any_meeting({p, p}, [&](std::uint32_t i) {
+                const Vec3& a = surface_.points[surface_.edges[i].a];
+                const Vec3& b = surface_.points[surface_.edges[i].b];
+                // The ends count by place, not by distance; nothing else does near them.
+                if (p == a || p == b) {
+                    parts[piece].push_back({i, p == a ? 0.0 : 1.0, v});
+                    return false;
+                }
+                const double length = squared_norm(b - a), at = dot(p - a, b - a) / length;
+                if (at > 0 && at < 1 && squared_norm((p - a) - at * (b - a)) <= tolerance_ * tolerance_) parts[piece].push_back({i, at, v});
                 return false;
-            }
-            const double length = squared_norm(b - a), at = dot(p - a, b - a) / length;
-            if (at > 0 && at < 1 && squared_norm((p - a) - at * (b - a)) <= tolerance_ * tolerance_) result.push_back({i, at, v});
-            return false;
-        });
-    }
+            });
+        }
+    });
+    std::vector<OnEdge> result;
+    for (const std::vector<OnEdge>& part : parts) result.insert(result.end(), part.begin(), part.end());
     std::sort(result.begin(), result.end());
     return result;
 }
@@ -232,10 +251,7 @@ Claim PlcComparison::segments() const {
     ClaimBuilder claim = builder(3);
     claim.checked(surface_.edges.size());
     const std::vector<OnEdge> on_edges = vertices_on_edges();
-    std::vector<bool> wanted(mesh_.vertex_count(), false);
-    for (const OnEdge& o : on_edges) wanted[o.vertex] = true;
-    const std::vector<Edge> mesh_edges = edges_between(mesh_, wanted);
-    const auto joined = [&](std::uint32_t v, std::uint32_t w) { return std::binary_search(mesh_edges.begin(), mesh_edges.end(), Edge{std::min(v, w), std::max(v, w)}); };
+    const auto joined = [&](std::uint32_t v, std::uint32_t w) { return has_edge(mesh_, stars_, {std::min(v, w), std::max(v, w)}); };
     // How far to look for the next vertex of a chain: others may lie within the tolerance of the segment without being on it.
     constexpr std::size_t kLookAhead = 16;
     auto begin = on_edges.begin();
@@ -276,14 +292,16 @@ Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
     std::map<std::int32_t, Sum> sums;
     const auto& triangles = surface_.triangles.triangles();
     const Vec3 origin = triangles.front()[0];
-    std::uint32_t hint = 0;
+    std::vector<TriangleTree::Nearest> separators(triangles.size(), {0, std::numeric_limits<double>::infinity()});
+    if (!separating_.empty()) mesh_.workers().for_ranges(triangles.size(), kSmallGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) separators[i] = separators_->nearest(centroid_of(triangles[i]), i == begin ? 0 : separators[i - 1].triangle);
+    });
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const Corners& t = triangles[i];
-        const auto nearest = separators_.nearest(centroid_of(t), hint);
-        hint = nearest.triangle;
+        const TriangleTree::Nearest& nearest = separators[i];
         if (nearest.distance > tolerance_) continue;  // between no two regions; plc_area says so if it is inside and not covered
         const ConstraintTriangle& c = constraints_[separating_[nearest.triangle]];
-        const auto& [p, q, r] = separators_.triangles()[nearest.triangle];
+        const auto& [p, q, r] = separators_->triangles()[nearest.triangle];
         const bool same_way = dot(cross(q - p, r - p), cross(t[1] - t[0], t[2] - t[0])) > 0;
         using LongVec = std::array<long double, 3>;
         const auto from_origin = [&](const Vec3& x) {
@@ -317,15 +335,15 @@ Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
 
 }  // namespace
 
-void append_plc_claims(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, const Plc* plc, Certificate& certificate) {
+void append_plc_claims(const SurveyedMesh& surveyed, const CertifyOptions& options, const Plc* plc, Certificate& certificate) {
     const auto give_up = [&](const std::string& reason) {
         for (const auto& [name, statement] : kStatements) certificate.claims.push_back(unchecked(name, statement, reason));
     };
     if (plc == nullptr) return give_up("no PLC given");
     const PlcReading reading = read_surface(*plc, options.flat_angle_rad, options.tolerance);
     if (!reading.surface) return give_up(reading.problem);
-    if (triangles.empty()) return give_up("the mesh has no constraint triangle");
-    const PlcComparison comparison(mesh, triangles, options, *reading.surface);
+    if (surveyed.triangles.empty()) return give_up("the mesh has no constraint triangle");
+    const PlcComparison comparison(surveyed, options, *reading.surface);
     certificate.claims.push_back(comparison.distance());
     certificate.claims.push_back(comparison.area());
     certificate.claims.push_back(comparison.vertices(false, plc->first_number));

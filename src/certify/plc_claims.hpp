@@ -6,10 +6,20 @@
 
 #include "certify/mesh_faces.hpp"
 #include "certify/suspect_mesh.hpp"
+#include "certify/tets_by_corner.hpp"
+#include "certify/vertex_places.hpp"
 #include "wellmesh/certificate.hpp"
 #include "wellmesh/plc.hpp"
 
 namespace wellmesh::certifying {
+
+/// A mesh and what was found out about it.
+struct SurveyedMesh {
+    const SuspectMesh& mesh;
+    const TetsByCorner& stars;
+    const VertexPlaces& places;
+    const std::vector<ConstraintTriangle>& triangles;
+};
 
 /// Appends plc_distance, plc_area, plc_vertices, plc_segments, plc_isolated_vertices, plc_filled, holes_empty
 /// and region_volumes, and sets plc_volume of the regions.
@@ -20,6 +30,6 @@ namespace wellmesh::certifying {
 /// the PLC's facets that have the region on one side only, where the side is that of the constraint triangle nearest to the
 /// triangle's centroid. The two sums share no term.
 /// @param plc  nullptr: the claims are appended as not checked.
-void append_plc_claims(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, const Plc* plc, Certificate& certificate);
+void append_plc_claims(const SurveyedMesh& surveyed, const CertifyOptions& options, const Plc* plc, Certificate& certificate);
 
 }  // namespace wellmesh::certifying

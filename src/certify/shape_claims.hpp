@@ -11,10 +11,11 @@
 namespace wellmesh::certifying {
 
 /// Sets `all`, `interior` and `boundary`. Tetrahedra that are not positive are left out.
-void measure_shapes(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, Certificate& certificate);
+void measure_shapes(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ConstraintTriangle>& triangles, Certificate& certificate);
 
-/// The same, and appends radius_edge, dihedral, aspect_ratio, sigma and max_volume: not checked where no bound is given.
+/// The same, and radius_edge, dihedral, aspect_ratio, sigma and max_volume: not checked where no bound is given.
 /// The bounds are compared without tolerance with values rounded a few times.
-void append_shape_claims(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options, Certificate& certificate);
+[[nodiscard]] std::vector<Claim> shape_claims(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ConstraintTriangle>& triangles,
+                                              const CertifyOptions& options, Certificate& certificate);
 
 }  // namespace wellmesh::certifying

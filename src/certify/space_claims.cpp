@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "certify/box_cover.hpp"
 #include "certify/delaunay_cells.hpp"
@@ -43,11 +46,33 @@ Box3 box_of(const SuspectMesh& mesh, const Tet& tet) {
 
 std::uint32_t tet_of_hull_face(const ConstraintTriangle& t) { return t.tets[t.tets[0] == kNone ? 1 : 0]; }
 
+/// A hull face and its plane.
+struct HullFace {
+    Box3 box;
+    Vec3 corner, normal;  ///< rounded once a difference, a product and a sum, as orient3d's minors are
+    std::uint32_t triangle = 0;
+
+    HullFace(const SuspectMesh& mesh, const ConstraintTriangle& t, std::uint32_t number) : corner(mesh.point(t.v[0])), triangle(number) {
+        const Corners corners{mesh.point(t.v[0]), mesh.point(t.v[1]), mesh.point(t.v[2])};
+        box = Box3::of(corners.data(), 3);
+        normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    }
+};
+
 /// Does the positive tetrahedron meet the plane of the hull face in more than a point or an edge, with points on its inner side?
-bool spans_plane_inside(const SuspectMesh& mesh, const ConstraintTriangle& face, const Tet& tet) {
+bool spans_plane_inside(const SuspectMesh& mesh, const HullFace& plane, const ConstraintTriangle& face, const Tet& tet) {
     const Sign inner_sign = face.tets[0] == kNone ? Sign::negative : Sign::positive;
+    const double bound = mesh.predicates().orient3d_bound();
+    // orient3d's determinants, expanded by their last rows: with as many roundings, so that the same bound holds.
+    std::array<double, 4> values{};
+    for (std::size_t i = 0; i < 4; ++i) values[i] = dot(plane.normal, mesh.point(tet[i]) - plane.corner);
     int inner = 0, outer = 0;
-    for (const std::uint32_t v : tet) {
+    for (std::size_t i = 0; i < 4; ++i) {
+        const double inwards = inner_sign == Sign::positive ? values[i] : -values[i];
+        inner += inwards > bound;
+        outer += inwards < -bound;
+        if (std::abs(inwards) > bound) continue;
+        const std::uint32_t v = tet[i];
         if (v == face.v[0] || v == face.v[1] || v == face.v[2]) continue;
         const Sign s = mesh.predicates().orient3d(mesh.point(face.v[0]), mesh.point(face.v[1]), mesh.point(face.v[2]), mesh.point(v));
         if (s != Sign::zero) ++(s == inner_sign ? inner : outer);
@@ -61,34 +86,86 @@ constexpr std::size_t kPairsPerElement = 100;
 
 enum class InsideHull : std::uint8_t { clear, not_clear, too_many };
 
+/// Hull faces near a few tetrahedra that are listed one after the other: mostly they are neighbours, and one search serves them all.
+class NearFaces {
+public:
+    static constexpr std::size_t kTets = 32;  ///< listed together
+
+    NearFaces(const BoxTree& tree, const std::vector<HullFace>& faces) : tree_(tree), faces_(faces) {}
+
+    void move_to(const Box3& around) {
+        found_.clear();
+        // Where they are no neighbours, each is searched for by itself.
+        few_ = !tree_.any_meeting(around, [&](std::uint32_t i) {
+            if (found_.empty()) box_ = faces_[i].box;
+            box_.grow(faces_[i].box);
+            found_.push_back(faces_[i]);
+            return found_.size() > kMost;
+        });
+    }
+    /// Calls visit(face) for those whose box meets `box`, until it returns true. @return whether it did. @pre `box` is inside the one that was moved to.
+    template <class Visit>
+    bool any_meeting(const Box3& box, Visit&& visit) const {
+        if (!few_) return tree_.any_meeting(box, [&](std::uint32_t i) { return visit(faces_[i]); });
+        if (found_.empty() || !box_.meets(box)) return false;
+        for (const HullFace& f : found_) {
+            const bool meets = (f.box.low.x <= box.high.x) & (box.low.x <= f.box.high.x) & (f.box.low.y <= box.high.y) & (box.low.y <= f.box.high.y) &
+                               (f.box.low.z <= box.high.z) & (box.low.z <= f.box.high.z);
+            if (meets && visit(f)) return true;
+        }
+        return false;
+    }
+
+private:
+    static constexpr std::size_t kMost = 256;
+    const BoxTree& tree_;
+    const std::vector<HullFace>& faces_;
+    std::vector<HullFace> found_;
+    Box3 box_{};
+    bool few_ = true;
+};
+
 /// Clear: no tetrahedron overlaps the one at a hull face next to that face, which proves `disjoint_tets` if the premises of (1) hold.
 InsideHull look_inside_hull(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles) {
-    std::vector<std::uint32_t> hull;
+    std::vector<HullFace> hull;
     std::vector<Box3> boxes;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         if (!triangles[i].on_hull) continue;
-        const Triangle& v = triangles[i].v;
-        const Corners corners{mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2])};
-        hull.push_back(static_cast<std::uint32_t>(i));
-        boxes.push_back(Box3::of(corners.data(), 3));
+        hull.emplace_back(mesh, triangles[i], static_cast<std::uint32_t>(i));
+        boxes.push_back(hull.back().box);
     }
-    std::size_t pairs_left = kPairsPerElement * (mesh.tet_count() + hull.size());
+    const std::size_t most_pairs = kPairsPerElement * (mesh.tet_count() + hull.size());
     const BoxCover cover(boxes);
-    const BoxTree tree(std::move(boxes));
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        const Tet& tet = mesh.mesh().tets[t];
-        const Box3 box = box_of(mesh, tet);
-        if (!cover.may_meet(box)) continue;
-        const bool found = tree.any_meeting(box, [&](std::uint32_t i) {
-            if (pairs_left == 0) return true;
-            --pairs_left;
-            const ConstraintTriangle& face = triangles[hull[i]];
-            const std::uint32_t owner = tet_of_hull_face(face);
-            return owner != t && spans_plane_inside(mesh, face, tet) && overlap(mesh, t, owner);
-        });
-        if (found) return pairs_left == 0 ? InsideHull::too_many : InsideHull::not_clear;
-    }
-    return InsideHull::clear;
+    const BoxTree tree(boxes);
+    // Either ends the search; then the claim is decided in another way, so that it doesn't matter which was first.
+    std::atomic<std::size_t> pairs = 0;
+    std::atomic<bool> overlapping = false;
+    mesh.workers().for_ranges(mesh.tet_count(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        NearFaces near(tree, hull);
+        std::array<Box3, NearFaces::kTets> box{};
+        for (std::size_t first = begin; first < end && !overlapping && pairs <= most_pairs; first += NearFaces::kTets) {
+            const std::size_t n = std::min(NearFaces::kTets, end - first);
+            for (std::size_t i = 0; i < n; ++i) box[i] = box_of(mesh, mesh.mesh().tets[first + i]);
+            Box3 around = box[0];
+            for (std::size_t i = 1; i < n; ++i) around.grow(box[i]);
+            if (!cover.may_meet(around)) continue;
+            near.move_to(around);
+            std::size_t met = 0;
+            for (std::size_t i = 0; i < n; ++i) {
+                const std::size_t t = first + i;
+                const Tet& tet = mesh.mesh().tets[t];
+                const bool found = near.any_meeting(box[i], [&](const HullFace& plane) {
+                    if (++met > most_pairs) return true;
+                    const ConstraintTriangle& face = triangles[plane.triangle];
+                    const std::uint32_t owner = tet_of_hull_face(face);
+                    return owner != t && spans_plane_inside(mesh, plane, face, tet) && overlap(mesh, t, owner);
+                });
+                if (found && met <= most_pairs) overlapping = true;
+            }
+            if (met > 0) pairs += met;
+        }
+    });
+    return overlapping ? InsideHull::not_clear : pairs > most_pairs ? InsideHull::too_many : InsideHull::clear;
 }
 
 }  // namespace
@@ -143,17 +220,19 @@ Claim claim_disjoint(const SuspectMesh& mesh, const BallSearch& search, const st
     std::vector<Box3> boxes;
     boxes.reserve(at_hull.size());
     for (const std::uint32_t t : at_hull) boxes.push_back(box_of(mesh, mesh.mesh().tets[t]));
-    const BoxTree tree(std::move(boxes));
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        std::uint32_t partner = kNone;
-        // Each pair of two tetrahedra at the hull is met from both sides: both overlap.
-        const bool found = tree.any_meeting(box_of(mesh, mesh.mesh().tets[t]), [&](std::uint32_t i) {
-            if (at_hull[i] == t) return false;
-            partner = at_hull[i];
-            return !flat(t) && overlap(mesh, t, partner);
-        });
-        if (found) claim.violated(EntityKind::tetrahedron, number(t), mesh.tet_centroid(t), [&] { return fmt::format("overlaps tetrahedron {}", partner + 1); });
-    }
+    const BoxTree tree(boxes);
+    look_in_ranges(mesh.workers(), mesh.tet_count(), kGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
+        for (std::size_t t = begin; t < end; ++t) {
+            std::uint32_t partner = kNone;
+            // Each pair of two tetrahedra at the hull is met from both sides: both overlap.
+            const bool found = tree.any_meeting(box_of(mesh, mesh.mesh().tets[t]), [&](std::uint32_t i) {
+                if (at_hull[i] == t) return false;
+                partner = at_hull[i];
+                return !flat(t) && overlap(mesh, t, partner);
+            });
+            if (found) part.violated(EntityKind::tetrahedron, number(t), mesh.tet_centroid(t), [&] { return fmt::format("overlaps tetrahedron {}", partner + 1); });
+        }
+    });
     if (claim.violations() > 0) claim.note("only overlaps with tetrahedra at the hull are counted");
     return faces_in_order ? claim.decided() : claim.undecided("without sound faces only overlaps at the hull can be found");
 }
@@ -167,24 +246,35 @@ Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool pro
     claim.checked(positive);
     if (positive < mesh.tet_count()) claim.note(fmt::format("{} inverted or flat tetrahedra have no circumsphere to look at", mesh.tet_count() - positive));
     if (proven_by_faces) return claim.decided();
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        if (!mesh.positive(t)) continue;
-        const Tet& v = mesh.mesh().tets[t];
-        const Ball ball = search.circumball(mesh.weighted(v[0]), mesh.weighted(v[1]), mesh.weighted(v[2]), mesh.weighted(v[3]));
-        std::uint32_t intruder = kNone;
-        const bool found = search.any_in(ball, [&](std::uint32_t q) {
-            if (has(v, q)) return false;
-            intruder = q;
-            return mesh.in_sphere(t, q) == Sign::positive;
-        });
-        if (found)
-            claim.violated(EntityKind::tetrahedron, number(t), mesh.tet_centroid(t), [&] {
-                return fmt::format("vertex {} at {} is {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
-                                   weighted ? "in conflict with its orthogonal sphere" : "inside its circumsphere", search.depth(ball, intruder));
+    look_in_ranges(mesh.workers(), mesh.tet_count(), kSmallGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
+        for (std::size_t t = begin; t < end; ++t) {
+            if (!mesh.positive(t)) continue;
+            const Tet& v = mesh.mesh().tets[t];
+            const Ball ball = search.circumball(mesh.weighted(v[0]), mesh.weighted(v[1]), mesh.weighted(v[2]), mesh.weighted(v[3]));
+            std::uint32_t intruder = kNone;
+            const bool found = search.any_in(ball, [&](std::uint32_t q) {
+                if (has(v, q)) return false;
+                intruder = q;
+                return mesh.in_sphere(t, q) == Sign::positive;
             });
-    }
+            if (found)
+                part.violated(EntityKind::tetrahedron, number(t), mesh.tet_centroid(t), [&] {
+                    return fmt::format("vertex {} at {} is {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
+                                       weighted ? "in conflict with its orthogonal sphere" : "inside its circumsphere", search.depth(ball, intruder));
+                });
+        }
+    });
     return claim.decided();
 }
+
+namespace {
+
+/// Constraint triangles of one range with a vertex strictly inside, however little.
+struct Touched {
+    std::uint64_t of_hull_faces = 0, of_all = 0;
+};
+
+}  // namespace
 
 GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles) {
     const bool weighted = mesh.is_weighted();
@@ -192,32 +282,38 @@ GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch
                        fmt::format("No vertex {} sphere {} a constraint triangle (on the hull, between regions, or listed).",
                                    weighted ? "is in conflict with the smallest" : "lies inside the equatorial", weighted ? "orthogonal to" : "of"));
     claim.checked(triangles.size());
-    std::uint64_t touched_hull_faces = 0, touched = 0;
-    for (const ConstraintTriangle& t : triangles) {
-        const WeightedPoint a = mesh.weighted(t.v[0]), b = mesh.weighted(t.v[1]), c = mesh.weighted(t.v[2]);
-        const Ball ball = search.equatorial_ball(a, b, c);
-        const auto side = [&](std::uint32_t q) {
-            return weighted ? equatorial_power_test(a, b, c, mesh.weighted(q)) : side_of_equatorial_sphere(a.point, b.point, c.point, mesh.point(q));
-        };
-        if (!(ball.a > 0)) continue;  // collinear corners span no sphere; such a triangle is no face of a positive tetrahedron
-        std::uint32_t intruder = kNone;
-        bool inside = false;
-        const bool encroached = search.any_in(ball, [&](std::uint32_t q) {
-            if (q == t.v[0] || q == t.v[1] || q == t.v[2]) return false;
-            if (side(q) != Sign::positive) return false;
-            inside = true;
-            intruder = q;
-            return search.depth(ball, q) > kGabrielMargin;
-        });
-        touched_hull_faces += inside && t.on_hull;
-        touched += inside && !encroached;
-        if (encroached)
-            claim.violated(EntityKind::triangle, t.listed == kNone ? 0 : number(t.listed), mesh.centroid(t.v.data(), 3), [&] {
-                return fmt::format("vertex {} at {} is {} sphere of {} {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
-                                   weighted ? "in conflict with the orthogonal" : "inside the equatorial", t.v[0] + 1, t.v[1] + 1, t.v[2] + 1,
-                                   search.depth(ball, intruder));
+    std::vector<Touched> parts((triangles.size() + kSmallGrain - 1) / kSmallGrain);
+    look_in_ranges(mesh.workers(), triangles.size(), kSmallGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
+        Touched& touch = parts[begin / kSmallGrain];
+        for (std::size_t i = begin; i < end; ++i) {
+            const ConstraintTriangle& t = triangles[i];
+            const WeightedPoint a = mesh.weighted(t.v[0]), b = mesh.weighted(t.v[1]), c = mesh.weighted(t.v[2]);
+            const Ball ball = search.equatorial_ball(a, b, c);
+            const auto side = [&](std::uint32_t q) {
+                return weighted ? equatorial_power_test(a, b, c, mesh.weighted(q)) : side_of_equatorial_sphere(a.point, b.point, c.point, mesh.point(q));
+            };
+            if (!(ball.a > 0)) continue;  // collinear corners span no sphere; such a triangle is no face of a positive tetrahedron
+            std::uint32_t intruder = kNone;
+            bool inside = false;
+            const bool encroached = search.any_in(ball, [&](std::uint32_t q) {
+                if (q == t.v[0] || q == t.v[1] || q == t.v[2]) return false;
+                if (side(q) != Sign::positive) return false;
+                inside = true;
+                intruder = q;
+                return search.depth(ball, q) > kGabrielMargin;
             });
-    }
+            touch.of_hull_faces += inside && t.on_hull;
+            touch.of_all += inside && !encroached;
+            if (encroached)
+                part.violated(EntityKind::triangle, t.listed == kNone ? 0 : number(t.listed), mesh.centroid(t.v.data(), 3), [&] {
+                    return fmt::format("vertex {} at {} is {} sphere of {} {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
+                                       weighted ? "in conflict with the orthogonal" : "inside the equatorial", t.v[0] + 1, t.v[1] + 1, t.v[2] + 1,
+                                       search.depth(ball, intruder));
+                });
+        }
+    });
+    std::uint64_t touched_hull_faces = 0, touched = 0;
+    for (const Touched& part : parts) touched_hull_faces += part.of_hull_faces, touched += part.of_all;
     if (touched > 0) claim.note(fmt::format("{} more have a vertex inside by less than {:g} of the squared radius", touched, kGabrielMargin));
     return {claim.decided(), touched_hull_faces};
 }
@@ -228,29 +324,33 @@ Claim claim_gabriel_subsegments(const SuspectMesh& mesh, const BallSearch& searc
                        fmt::format("No vertex {} sphere {} a constraint edge (where constraint triangles bend or meet, or listed).",
                                    weighted ? "is in conflict with the smallest" : "lies inside the diametral", weighted ? "orthogonal to" : "of"));
     claim.checked(segments.size());
-    std::uint64_t touched = 0;
-    for (const ConstraintSegment& s : segments) {
-        const WeightedPoint a = mesh.weighted(s.v[0]), b = mesh.weighted(s.v[1]);
-        if (a.point == b.point) continue;
-        const Ball ball = search.diametral_ball(a, b);
-        const auto side = [&](std::uint32_t q) {
-            return weighted ? diametral_power_test(a, b, mesh.weighted(q)) : side_of_diametral_sphere(a.point, b.point, mesh.point(q));
-        };
-        std::uint32_t intruder = kNone;
-        bool inside = false;
-        const bool encroached = search.any_in(ball, [&](std::uint32_t q) {
-            if (q == s.v[0] || q == s.v[1] || side(q) != Sign::positive) return false;
-            inside = true;
-            intruder = q;
-            return search.depth(ball, q) > kGabrielMargin;
-        });
-        touched += inside && !encroached;
-        if (encroached)
-            claim.violated(EntityKind::edge, s.listed == kNone ? 0 : number(s.listed), mesh.centroid(s.v.data(), 2), [&] {
-                return fmt::format("vertex {} at {} is {} sphere of {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
-                                   weighted ? "in conflict with the orthogonal" : "inside the diametral", s.v[0] + 1, s.v[1] + 1, search.depth(ball, intruder));
+    std::vector<std::uint64_t> parts((segments.size() + kSmallGrain - 1) / kSmallGrain, 0);
+    look_in_ranges(mesh.workers(), segments.size(), kSmallGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const ConstraintSegment& s = segments[i];
+            const WeightedPoint a = mesh.weighted(s.v[0]), b = mesh.weighted(s.v[1]);
+            if (a.point == b.point) continue;
+            const Ball ball = search.diametral_ball(a, b);
+            const auto side = [&](std::uint32_t q) {
+                return weighted ? diametral_power_test(a, b, mesh.weighted(q)) : side_of_diametral_sphere(a.point, b.point, mesh.point(q));
+            };
+            std::uint32_t intruder = kNone;
+            bool inside = false;
+            const bool encroached = search.any_in(ball, [&](std::uint32_t q) {
+                if (q == s.v[0] || q == s.v[1] || side(q) != Sign::positive) return false;
+                inside = true;
+                intruder = q;
+                return search.depth(ball, q) > kGabrielMargin;
             });
-    }
+            parts[begin / kSmallGrain] += inside && !encroached;
+            if (encroached)
+                part.violated(EntityKind::edge, s.listed == kNone ? 0 : number(s.listed), mesh.centroid(s.v.data(), 2), [&] {
+                    return fmt::format("vertex {} at {} is {} sphere of {} {}, by {:.3g} of the squared radius", intruder + 1, text_of(mesh.point(intruder)),
+                                       weighted ? "in conflict with the orthogonal" : "inside the diametral", s.v[0] + 1, s.v[1] + 1, search.depth(ball, intruder));
+                });
+        }
+    });
+    const std::uint64_t touched = std::accumulate(parts.begin(), parts.end(), std::uint64_t{0});
     if (touched > 0) claim.note(fmt::format("{} more have a vertex inside by less than {:g} of the squared radius", touched, kGabrielMargin));
     return claim.decided();
 }

@@ -12,7 +12,7 @@
 
 namespace wellmesh::certifying {
 
-SuspectMesh::SuspectMesh(const TetMesh& mesh) : mesh_(mesh) {
+SuspectMesh::SuspectMesh(const TetMesh& mesh, unsigned threads) : mesh_(mesh), workers_(threads) {
     if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& p) { return in_exact_range(p); })) {
         flushed_ = mesh.vertices;
         for (Vec3& p : flushed_) p = flush_to_exact_range(p);
@@ -22,19 +22,24 @@ SuspectMesh::SuspectMesh(const TetMesh& mesh) : mesh_(mesh) {
         if (std::fabs(w) < kMinWeight) w = 0;
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Vec3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+    places_.reserve(vertex_count());
     for (const Vec3& p : points()) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
         largest_coordinate_ = std::max({largest_coordinate_, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        places_.push_back({{p, is_weighted() ? weights_[places_.size()] : 0}});
     }
     double weight_extent = 0;
     if (is_weighted()) weight_extent = *std::max_element(weights_.begin(), weights_.end()) - *std::min_element(weights_.begin(), weights_.end());
     if (!points().empty()) predicates_ = PredicateFilter(high - low, weight_extent);
     positive_.resize(mesh.tets.size());
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-        const auto& v = mesh.tets[t];
-        positive_[t] = predicates_.orient3d(point(v[0]), point(v[1]), point(v[2]), point(v[3])) == Sign::positive;
-    }
+    static_assert(kGrain % 1024 == 0, "ranges share no word of positive_");
+    workers_.for_ranges(mesh.tets.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const auto& v = mesh.tets[t];
+            positive_[t] = predicates_.orient3d(point(v[0]), point(v[1]), point(v[2]), point(v[3])) == Sign::positive;
+        }
+    });
 }
 
 Sign SuspectMesh::in_sphere(std::size_t tet, std::uint32_t vertex) const {
@@ -52,6 +57,14 @@ Vec3 SuspectMesh::centroid(const std::uint32_t* v, std::size_t n) const {
 ClaimBuilder::ClaimBuilder(std::string name, std::string statement) {
     claim_.name = std::move(name);
     claim_.statement = std::move(statement);
+}
+
+void ClaimBuilder::absorb(ClaimBuilder&& later) {
+    claim_.checked += later.claim_.checked;
+    claim_.violations += later.claim_.violations;
+    if (!later.claim_.witness || (claim_.witness && claim_.witness->number <= later.claim_.witness->number)) return;
+    claim_.witness = std::move(later.claim_.witness);
+    claim_.detail = std::move(later.claim_.detail);
 }
 
 void ClaimBuilder::note(const std::string& text) {

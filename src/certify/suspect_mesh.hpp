@@ -4,13 +4,16 @@
 // Nothing here comes from the generator: adjacency is found by sorting faces, orientation by exact predicates.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/workers.hpp"
 #include "predicates/predicates.hpp"
 #include "wellmesh/certificate.hpp"
 #include "wellmesh/tet_mesh.hpp"
@@ -38,17 +41,19 @@ class SuspectMesh {
 public:
     /// @pre every vertex number is in range, every coordinate and weight finite. Coordinates and weights too small for the predicates to be
     /// exact (predicates/exact_range.hpp) count as zero.
-    explicit SuspectMesh(const TetMesh& mesh);
+    /// @param threads  at work whenever something is done in ranges (workers()); 0: as many as the machine has cores.
+    explicit SuspectMesh(const TetMesh& mesh, unsigned threads = 1);
     SuspectMesh(const SuspectMesh&) = delete;
     SuspectMesh& operator=(const SuspectMesh&) = delete;
 
     [[nodiscard]] const TetMesh& mesh() const { return mesh_; }
+    [[nodiscard]] Workers& workers() const { return workers_; }
     [[nodiscard]] std::size_t vertex_count() const { return mesh_.vertices.size(); }
     [[nodiscard]] std::size_t tet_count() const { return mesh_.tets.size(); }
-    [[nodiscard]] const Vec3& point(std::uint32_t v) const { return points()[v]; }
+    [[nodiscard]] const Vec3& point(std::uint32_t v) const { return places_[v].point.point; }  ///< as insphere_lanes.hpp wants it
     [[nodiscard]] const std::vector<Vec3>& points() const { return flushed_.empty() ? mesh_.vertices : flushed_; }
     [[nodiscard]] bool is_weighted() const { return !weights_.empty(); }
-    [[nodiscard]] WeightedPoint weighted(std::uint32_t v) const { return {point(v), weights_.empty() ? 0 : weights_[v]}; }
+    [[nodiscard]] const WeightedPoint& weighted(std::uint32_t v) const { return places_[v].point; }
     /// Of all vertices; empty: none.
     [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
     [[nodiscard]] const PredicateFilter& predicates() const { return predicates_; }
@@ -61,7 +66,12 @@ public:
     [[nodiscard]] double largest_coordinate() const { return largest_coordinate_; }
 
 private:
+    struct alignas(32) Place {
+        WeightedPoint point;  // weight 0 without weights
+    };
     const TetMesh& mesh_;
+    mutable Workers workers_;
+    std::vector<Place> places_;
     std::vector<Vec3> flushed_;  // empty unless some coordinate had to be
     std::vector<double> weights_;
     PredicateFilter predicates_;
@@ -74,7 +84,10 @@ private:
 /// Counts violations and keeps the first witness, i.e. the one with the lowest number.
 class ClaimBuilder {
 public:
+    ClaimBuilder() = default;  ///< nameless, to be absorbed by one that has a name
     ClaimBuilder(std::string name, std::string statement);
+    /// Adds what was found in later elements.
+    void absorb(ClaimBuilder&& later);
     /// One more violation by the element of this number (from 1; 0: it has none in the file). `detail` is called when it becomes the witness.
     template <class Detail>
     void violated(EntityKind kind, std::uint64_t number, const Vec3& where, Detail&& detail) {
@@ -96,6 +109,17 @@ private:
     Claim claim_;
     std::string notes_;
 };
+
+/// Calls look(begin, end, part) for ranges of [0, n) whose limits don't depend on the number of threads, then joins the parts in order.
+template <class Look>
+void look_in_ranges(Workers& workers, std::size_t n, std::size_t grain, ClaimBuilder& claim, Look&& look) {
+    std::vector<ClaimBuilder> parts((n + grain - 1) / grain);
+    workers.for_ranges(n, grain, [&](std::size_t begin, std::size_t end, std::size_t piece) { look(begin, end, parts[piece]); });
+    for (ClaimBuilder& part : parts) claim.absorb(std::move(part));
+}
+
+/// Of elements that cost some ten nanoseconds each, and of those that cost a hundred times that.
+inline constexpr std::size_t kGrain = std::size_t{1} << 14, kSmallGrain = std::size_t{1} << 8;
 
 /// A claim that could not be looked at.
 [[nodiscard]] Claim unchecked(std::string name, std::string statement, std::string reason);

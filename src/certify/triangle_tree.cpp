@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
@@ -57,27 +56,28 @@ double Box3::squared_distance_to(const Vec3& p) const {
     return dx * dx + dy * dy + dz * dz;
 }
 
-BoxTree::BoxTree(std::vector<Box3> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
+BoxTree::BoxTree(const std::vector<Box3>& boxes) {
+    leaves_.reserve(boxes.size());
+    for (const Box3& b : boxes) leaves_.push_back({b, static_cast<std::uint32_t>(leaves_.size())});
     std::size_t nodes = 1;
-    for (std::size_t n = order_.size(); n > kLeaf; n = n - n / 2) nodes = 2 * nodes + 1;
+    for (std::size_t n = leaves_.size(); n > kLeaf; n = n - n / 2) nodes = 2 * nodes + 1;
     nodes_.resize(nodes);
-    if (!order_.empty()) build(0, 0, order_.size());
+    if (!leaves_.empty()) build(0, 0, leaves_.size());
 }
 
 void BoxTree::build(std::size_t node, std::size_t begin, std::size_t end) {
     Box3& box = nodes_[node];
-    box = boxes_[order_[begin]];
-    for (std::size_t i = begin + 1; i < end; ++i) box.grow(boxes_[order_[i]]);
+    box = leaves_[begin].box;
+    for (std::size_t i = begin + 1; i < end; ++i) box.grow(leaves_[i].box);
     if (end - begin <= kLeaf) return;
     const Vec3 size = box.high - box.low;
     const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    const auto key = [&](std::uint32_t i) { return coordinate(boxes_[i].low, axis) / 2 + coordinate(boxes_[i].high, axis) / 2; };
-    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t i, std::uint32_t j) {
-        const double a = key(i), b = key(j);
-        return a != b ? a < b : i < j;
+    const auto at = [&](std::size_t i) { return leaves_.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto key = [&](const Leaf& l) { return coordinate(l.box.low, axis) / 2 + coordinate(l.box.high, axis) / 2; };
+    std::nth_element(at(begin), at(middle), at(end), [&](const Leaf& l, const Leaf& m) {
+        const double a = key(l), b = key(m);
+        return a != b ? a < b : l.number < m.number;
     });
     build(2 * node + 1, begin, middle);
     build(2 * node + 2, middle, end);
@@ -107,7 +107,7 @@ TriangleTree::TriangleTree(std::vector<Corners> triangles) : triangles_(std::mov
         if (boxes.size() == 1) box_ = boxes.back();
         box_.grow(boxes.back());
     }
-    tree_ = BoxTree(std::move(boxes));
+    tree_ = BoxTree(boxes);
 }
 
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& p, std::uint32_t hint) const {

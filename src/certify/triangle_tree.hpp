@@ -26,27 +26,31 @@ struct Box3 {
 class BoxTree {
 public:
     BoxTree() = default;
-    explicit BoxTree(std::vector<Box3> boxes);
-    [[nodiscard]] bool empty() const { return order_.empty(); }
+    explicit BoxTree(const std::vector<Box3>& boxes);
+    [[nodiscard]] bool empty() const { return leaves_.empty(); }
 
     /// Calls visit(number) for every box that meets `box`, until it returns true. @return whether it did.
     template <class Visit>
     bool any_meeting(const Box3& box, Visit&& visit) const {
-        return !empty() && descend(0, 0, order_.size(), [&](const Box3& b) { return b.meets(box); }, visit);
+        return !empty() && descend(0, 0, leaves_.size(), [&](const Box3& b) { return b.meets(box); }, visit);
     }
     /// Visits boxes that `admits` holds for, and whose ancestors it holds for; it may change its mind as the search goes on.
     template <class Admits, class Visit>
     bool any_admitted(Admits&& admits, Visit&& visit) const {
-        return !empty() && descend(0, 0, order_.size(), admits, visit);
+        return !empty() && descend(0, 0, leaves_.size(), admits, visit);
     }
     /// Calls visit(number, bound) for boxes nearer than sqrt(bound) to p, nearer subtrees first; visit lowers the bound.
     template <class Visit>
     void nearest(const Vec3& p, double& bound, Visit&& visit) const {
-        if (!empty()) approach(0, 0, order_.size(), p, bound, visit);
+        if (!empty()) approach(0, 0, leaves_.size(), p, bound, visit);
     }
 
 private:
     static constexpr std::size_t kLeaf = 4;
+    struct Leaf {
+        Box3 box;
+        std::uint32_t number;
+    };
     void build(std::size_t node, std::size_t begin, std::size_t end);
 
     template <class Admits, class Visit>
@@ -54,7 +58,7 @@ private:
         if (!admits(nodes_[node])) return false;
         if (end - begin <= kLeaf) {
             for (std::size_t i = begin; i < end; ++i)
-                if (admits(boxes_[order_[i]]) && visit(order_[i])) return true;
+                if (admits(leaves_[i].box) && visit(leaves_[i].number)) return true;
             return false;
         }
         const std::size_t middle = begin + (end - begin) / 2;
@@ -64,7 +68,7 @@ private:
     void approach(std::size_t node, std::size_t begin, std::size_t end, const Vec3& p, double& bound, Visit& visit) const {
         if (end - begin <= kLeaf) {
             for (std::size_t i = begin; i < end; ++i)
-                if (boxes_[order_[i]].squared_distance_to(p) < bound) visit(order_[i], bound);
+                if (leaves_[i].box.squared_distance_to(p) < bound) visit(leaves_[i].number, bound);
             return;
         }
         const std::size_t middle = begin + (end - begin) / 2;
@@ -74,8 +78,8 @@ private:
         if (left > right && left < bound) approach(2 * node + 1, begin, middle, p, bound, visit);
     }
 
-    std::vector<Box3> boxes_, nodes_;  // as given; by heap numbering
-    std::vector<std::uint32_t> order_;
+    std::vector<Leaf> leaves_;  // a node's are contiguous
+    std::vector<Box3> nodes_;   // by heap numbering
 };
 
 using Corners = std::array<Vec3, 3>;

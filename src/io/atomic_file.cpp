@@ -24,7 +24,6 @@ namespace wellmesh::io {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-constexpr std::size_t kLongestNumber = 32;  // shortest round-trip doubles take at most 24 characters, 64-bit integers 20
 constexpr int kNameAttempts = 1000;
 
 /// Beyond RLIMIT_FSIZE a write raises SIGXFSZ, which by default kills the process and would leave the temporary behind.
@@ -64,8 +63,8 @@ std::filesystem::path followed(const std::filesystem::path& target) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::filesystem::path& target, std::stop_token stop)
-    : target_(followed(target)), stop_(std::move(stop)), buffer_(kBufferBytes) {
+OutputFile::OutputFile(const std::filesystem::path& target, std::stop_token stop, Workers* workers)
+    : target_(followed(target)), stop_(std::move(stop)), workers_(workers), buffer_(kBufferBytes) {
     struct stat status {};
     if (::stat(target_.c_str(), &status) != 0) {
         if (errno != ENOENT) fail("open", errno);
@@ -199,7 +198,7 @@ void OutputFile::retract() noexcept {
 }
 
 OutputFile& OutputSet::add(const std::filesystem::path& target) {
-    files_.push_back(std::make_unique<OutputFile>(target, stop_));
+    files_.push_back(std::make_unique<OutputFile>(target, stop_, &workers_));
     targets_.push_back(target);
     return *files_.back();
 }

@@ -138,7 +138,7 @@ std::vector<std::filesystem::path> write_mesh(const TetMesh& mesh, const std::fi
     const std::string extension = io::lower_case_extension(path);
     check_writable(options);
     check_writable(mesh);
-    io::OutputSet files(options.stop, options.sync);
+    io::OutputSet files(options.stop, options.sync, options.threads);
     if (extension == ".mesh") {
         io::write_medit(mesh, options.references, {}, files.add(path));
         const auto weights = std::filesystem::path(path).replace_extension(".weights.sol");
@@ -163,7 +163,7 @@ std::vector<std::filesystem::path> write_plc(const Plc& plc, const std::filesyst
     if (format == nullptr) unknown_format(ErrorCode::cannot_write, Stage::write, "write a complex to", path, ".poly .smesh .off .obj .ply .stl .mesh .msh .vtp");
     check_writable(options);
     check_writable(plc);
-    io::OutputSet files(options.stop, options.sync);
+    io::OutputSet files(options.stop, options.sync, options.threads);
     const bool needs_simple = format->most_corners > 0;
     const Plc simple = needs_simple ? with_simple_facets(plc, format->most_corners) : Plc{};
     const Plc& out = needs_simple ? simple : plc;

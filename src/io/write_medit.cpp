@@ -21,14 +21,14 @@ void write_section(OutputFile& out, std::string_view keyword, const std::vector<
     out.character('\n');
     out.integer(static_cast<std::int64_t>(elements.size()));
     out.character('\n');
-    for (std::size_t i = 0; i < elements.size(); ++i) {
+    out.rows(elements.size(), [&](auto& row, std::size_t i) {
         for (const std::uint32_t v : elements[i]) {
-            out.integer(std::int64_t{v} + 1);
-            out.character(' ');
+            row.integer(std::int64_t{v} + 1);
+            row.character(' ');
         }
-        out.integer(references[i]);
-        out.character('\n');
-    }
+        row.integer(references[i]);
+        row.character('\n');
+    });
 }
 
 }  // namespace
@@ -43,12 +43,12 @@ void write_medit(const TetMesh& mesh, References references, const std::vector<s
     out.text("MeshVersionFormatted 2\nDimension 3\nVertices\n");
     out.integer(static_cast<std::int64_t>(mesh.vertices.size()));
     out.character('\n');
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        out.point(mesh.vertices[v]);
-        out.character(' ');
-        out.integer(vertex_reference(v));
-        out.character('\n');
-    }
+    out.rows(mesh.vertices.size(), [&](auto& row, std::size_t v) {
+        row.point(mesh.vertices[v]);
+        row.character(' ');
+        row.integer(vertex_reference(v));
+        row.character('\n');
+    });
     const std::vector<std::int32_t> unmarked(markers && mesh.subsegment_markers.empty() ? mesh.subsegments.size() : 0, 0);
     write_section(out, "Edges", mesh.subsegments, !markers ? mesh.subsegment_segments : mesh.subsegment_markers.empty() ? unmarked : mesh.subsegment_markers);
     write_section(out, "Triangles", mesh.subfaces, markers ? mesh.subface_markers : mesh.subface_facets);
@@ -67,10 +67,10 @@ void write_medit_weights(const std::vector<double>& weights, OutputFile& out) {
     out.text("MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n");
     out.integer(static_cast<std::int64_t>(weights.size()));
     out.text("\n1 1\n");  // one field, a scalar
-    for (const double w : weights) {
-        out.real(w);
-        out.character('\n');
-    }
+    out.rows(weights.size(), [&](auto& row, std::size_t v) {
+        row.real(weights[v]);
+        row.character('\n');
+    });
     out.text("End\n");
 }
 

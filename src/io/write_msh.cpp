@@ -241,18 +241,21 @@ void write_nodes(OutputFile& out, const TetMesh& mesh, Groups& groups) {
         for (const Entity& e : dimension.entities) {
             if (e.vertices.empty()) continue;
             write_integers(out, {dimension.kDimension, e.tag, 0, static_cast<std::int64_t>(e.vertices.size())});
-            for (const std::uint32_t v : e.vertices) write_integers(out, {std::int64_t{v} + 1});
-            for (const std::uint32_t v : e.vertices) {
-                out.point(mesh.vertices[v]);
-                out.character('\n');
-            }
+            out.rows(e.vertices.size(), [&](auto& row, std::size_t i) {
+                row.integer(std::int64_t{e.vertices[i]} + 1);
+                row.character('\n');
+            });
+            out.rows(e.vertices.size(), [&](auto& row, std::size_t i) {
+                row.point(mesh.vertices[e.vertices[i]]);
+                row.character('\n');
+            });
         }
     });
     out.text("$EndNodes\n");
 }
 
-template <std::size_t N>
-void write_corners(OutputFile& out, const std::array<std::uint32_t, N>& corners) {
+template <class Output, std::size_t N>
+void write_corners(Output& out, const std::array<std::uint32_t, N>& corners) {
     for (const std::uint32_t v : corners) {
         out.character(' ');
         out.integer(std::int64_t{v} + 1);
@@ -294,10 +297,11 @@ void write_msh41(const TetMesh& mesh, OutputFile& out) {
     groups.for_each([&](const auto& dimension) {
         for (const Entity& e : dimension.entities) {
             write_integers(out, {dimension.kDimension, e.tag, dimension.kElementType, static_cast<std::int64_t>(e.last - e.first)});
-            for (std::size_t i = e.first; i < e.last; ++i) {
-                out.integer(++number);
-                write_corners(out, dimension.elements[dimension.order[i]]);
-            }
+            out.rows(e.last - e.first, [&](auto& row, std::size_t i) {
+                row.integer(number + static_cast<std::int64_t>(i) + 1);
+                write_corners(row, dimension.elements[dimension.order[e.first + i]]);
+            });
+            number += static_cast<std::int64_t>(e.last - e.first);
         }
     });
     out.text("$EndElements\n");
@@ -309,27 +313,29 @@ void write_msh22(const TetMesh& mesh, OutputFile& out) {
     write_head(out, "2.2", groups);
     out.text("$Nodes\n");
     write_integers(out, {static_cast<std::int64_t>(mesh.vertices.size())});
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        out.integer(static_cast<std::int64_t>(v) + 1);
-        out.character(' ');
-        out.point(mesh.vertices[v]);
-        out.character('\n');
-    }
+    out.rows(mesh.vertices.size(), [&](auto& row, std::size_t v) {
+        row.integer(static_cast<std::int64_t>(v) + 1);
+        row.character(' ');
+        row.point(mesh.vertices[v]);
+        row.character('\n');
+    });
     out.text("$EndNodes\n$Elements\n");
     write_integers(out, {element_count(groups)});
     std::int64_t number = 0;
     groups.for_each([&](const auto& dimension) {
-        for (const Entity& e : dimension.entities)
-            for (std::size_t i = e.first; i < e.last; ++i) {
-                out.integer(++number);
-                out.character(' ');
-                out.integer(dimension.kElementType);
-                out.text(" 2 ");
-                out.integer(e.group);
-                out.character(' ');
-                out.integer(e.tag);
-                write_corners(out, dimension.elements[dimension.order[i]]);
-            }
+        for (const Entity& e : dimension.entities) {
+            out.rows(e.last - e.first, [&](auto& row, std::size_t i) {
+                row.integer(number + static_cast<std::int64_t>(i) + 1);
+                row.character(' ');
+                row.integer(dimension.kElementType);
+                row.text(" 2 ");
+                row.integer(e.group);
+                row.character(' ');
+                row.integer(e.tag);
+                write_corners(row, dimension.elements[dimension.order[e.first + i]]);
+            });
+            number += static_cast<std::int64_t>(e.last - e.first);
+        }
     });
     out.text("$EndElements\n");
     write_weights(out, mesh.weights);

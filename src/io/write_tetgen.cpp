@@ -19,16 +19,16 @@ void write_rows(OutputFile& out, std::string_view columns, const std::vector<std
                 const std::vector<std::int32_t>& references) {
     out.integer(static_cast<std::int64_t>(elements.size()));
     out.text(columns);
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-        out.integer(static_cast<std::int64_t>(i) + 1);
+    out.rows(elements.size(), [&](auto& row, std::size_t i) {
+        row.integer(static_cast<std::int64_t>(i) + 1);
         for (const std::uint32_t v : elements[i]) {
-            out.character(' ');
-            out.integer(std::int64_t{v} + 1);
+            row.character(' ');
+            row.integer(std::int64_t{v} + 1);
         }
-        out.character(' ');
-        out.integer(references[i]);
-        out.character('\n');
-    }
+        row.character(' ');
+        row.integer(references[i]);
+        row.character('\n');
+    });
 }
 
 }  // namespace
@@ -39,22 +39,22 @@ void write_tetgen(const TetMesh& mesh, const std::filesystem::path& path, Output
     nodes.integer(static_cast<std::int64_t>(mesh.vertices.size()));
     nodes.text(mesh.weights.empty() ? " 3 0" : " 3 1");
     nodes.text(mesh.vertex_markers.empty() ? " 0\n" : " 1\n");
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        nodes.integer(static_cast<std::int64_t>(v) + 1);
+    nodes.rows(mesh.vertices.size(), [&](auto& row, std::size_t v) {
+        row.integer(static_cast<std::int64_t>(v) + 1);
         for (const double coordinate : {mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z}) {
-            nodes.character(' ');
-            nodes.real(coordinate);
+            row.character(' ');
+            row.real(coordinate);
         }
         if (!mesh.weights.empty()) {
-            nodes.character(' ');
-            nodes.real(mesh.weights[v]);
+            row.character(' ');
+            row.real(mesh.weights[v]);
         }
         if (!mesh.vertex_markers.empty()) {
-            nodes.character(' ');
-            nodes.integer(mesh.vertex_markers[v]);
+            row.character(' ');
+            row.integer(mesh.vertex_markers[v]);
         }
-        nodes.character('\n');
-    }
+        row.character('\n');
+    });
     write_rows(add(".ele"), " 4 1\n", mesh.tets, mesh.tet_regions);
     const auto any = [](const std::vector<std::int32_t>& markers) { return std::any_of(markers.begin(), markers.end(), [](std::int32_t m) { return m != 0; }); };
     write_rows(add(".face"), " 1\n", mesh.subfaces, any(mesh.subface_markers) ? mesh.subface_markers : mesh.subface_facets);

@@ -21,10 +21,11 @@ namespace {
 template <class Measure>
 void add_measure(VtkFile& file, std::string_view name, const TetMesh& mesh, Measure measure) {
     file.array<double>(name, mesh.tets.size(), [&mesh, measure](OutputFile& out) {
-        for (const auto& [a, b, c, d] : mesh.tets) {
+        out.rows(mesh.tets.size(), [&](auto& row, std::size_t t) {
+            const auto& [a, b, c, d] = mesh.tets[t];
             const double value = measure(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], mesh.vertices[d]);
-            out.bytes(&value, sizeof value);
-        }
+            row.bytes(&value, sizeof value);
+        });
     });
 }
 

@@ -29,6 +29,8 @@ PredicateFilter::PredicateFilter(const Vec3& box_extent, double weight_extent) {
 }
 
 Sign PredicateFilter::orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    // Most points in one plane are so on a side of a box.
+    if ((a.x == b.x && a.x == c.x && a.x == d.x) || (a.y == b.y && a.y == c.y && a.y == d.y) || (a.z == b.z && a.z == c.z && a.z == d.z)) return Sign::zero;
     return wellmesh::orient3d(a, b, c, d);
 }
 Sign PredicateFilter::insphere_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {

@@ -8,9 +8,12 @@
 // its tetrahedra are decided without ties. The signs are derived beside break_tie in insphere.cpp.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
+#include "predicates/four_inspheres.hpp"
 #include "predicates/fp_environment.hpp"
 #include "predicates/insphere_lanes.hpp"
 #include "wellmesh/predicates.hpp"
@@ -71,6 +74,19 @@ public:
         if (value > insphere_bound_) return Sign::positive;
         if (value < -insphere_bound_) return Sign::negative;
         return insphere_perturbed_beyond_filter(*s[0], *s[1], *s[2], *s[3], e);
+    }
+    /// insphere(points[i]..., e) for i = 0 .. 3; points as insphere_lanes.hpp wants them.
+    void insphere_of_four_padded(const std::array<std::array<const Vec3*, 4>, 4>& points, const Vec3& e, std::array<Sign, 4>& signs) const {
+        std::array<double, 4> values{};
+        if (has_lanes_) {
+            values = four_insphere_values(points, e);
+        } else {
+            for (std::size_t i = 0; i < 4; ++i) values[i] = insphere_value(*points[i][0], *points[i][1], *points[i][2], *points[i][3], e);
+        }
+        for (std::size_t i = 0; i < 4; ++i)
+            signs[i] = values[i] > insphere_bound_    ? Sign::positive
+                       : values[i] < -insphere_bound_ ? Sign::negative
+                                                      : insphere_beyond_filter(*points[i][0], *points[i][1], *points[i][2], *points[i][3], e);
     }
     [[nodiscard]] Sign power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
                                   const WeightedPoint& e) const {

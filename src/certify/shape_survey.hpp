@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// One pass over the shapes of all tetrahedra: statistics, regions, and which exceed a bound.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "certify/edge_lengths.hpp"
+#include "certify/mesh_faces.hpp"
+#include "certify/suspect_mesh.hpp"
+#include "quality/tet_shape.hpp"
+#include "wellmesh/certificate.hpp"
+
+namespace wellmesh::certifying {
+
+/// One bound: which value, which way, of which tetrahedra.
+struct ShapeBound {
+    enum class Where : std::uint8_t { everywhere, interior, boundary };
+    std::optional<double> limit;
+    bool upper = true;
+    double TetShape::* value = nullptr;
+    const char* words = "";
+    Where where = Where::everywhere;
+
+    [[nodiscard]] bool applies(bool boundary) const { return limit && (where == Where::everywhere || boundary == (where == Where::boundary)); }
+    [[nodiscard]] bool kept(const TetShape& shape) const { return upper ? shape.*value <= *limit : shape.*value >= *limit; }
+};
+
+/// Positive tetrahedra only; nothing about edges.
+struct ShapeSurvey {
+    ShapeStatistics all, interior, boundary, unexempt, unexempt_interior, unexempt_boundary;
+    std::vector<TetClass> classes;         ///< of all tetrahedra
+    std::vector<ClaimBuilder> exceedances;  ///< of each bound, by tetrahedra that are not exempt
+};
+
+/// Extremes are within a rounding of the extreme; which tetrahedra keep a bound is decided by shape_of().
+/// @param exempt  ascending.
+[[nodiscard]] ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<ShapeBound>& bounds,
+                                        const std::vector<std::uint64_t>& exempt);
+
+/// One flag a vertex: whether it is a corner of one of the triangles.
+[[nodiscard]] std::vector<std::uint8_t> vertices_on(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles);
+
+/// Numbers and volumes of all tetrahedra by region, ascending.
+[[nodiscard]] std::vector<RegionVolume> measure_regions(const SuspectMesh& mesh);
+
+}  // namespace wellmesh::certifying
