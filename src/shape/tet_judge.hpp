@@ -44,7 +44,23 @@ public:
         if (squared_radius > kSizeTolerance * kSizeTolerance * size.max_squared_circumradius ||
             det > 6 * size.max_volume)
             return kNoAngleCosine;
-        return std::max(max_cos_dihedral(a, b, c, d), aspect_badness(squared_radius / (det * det), {cross(d - b, c - b), vw, wu, uv}));
+        const std::array<Vec3, 4> normals{cross(d - b, c - b), vw, wu, uv};
+        return std::max(max_cos_of_normals(normals), aspect_badness(squared_radius / (det * det), normals));
+    }
+    /// Is badness() of abcd certainly more than this cosine by one of its angles? Without a division or a root, for those that fail: most do.
+    [[nodiscard]] static bool is_surely_worse(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double cosine) {
+        if (!(cosine > 0 && cosine < 1)) return false;
+        const std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
+        if (!(dot(b - a, n[1]) > 0)) return true;
+        const std::array<double, 4> q{squared_norm(n[0]), squared_norm(n[1]), squared_norm(n[2]), squared_norm(n[3])};
+        // Far beyond rounding; and where products of two squared areas, about L^8, leave the range of doubles nothing is certain.
+        constexpr double kMargin = 1 + 1e-12, kLeast = 1e-280;
+        const double bound = kMargin * cosine * cosine;
+        const auto below = [&](std::size_t i, std::size_t j) {
+            const double s = -dot(n[i], n[j]), square = s * s;
+            return s > 0 && square > kLeast && square > bound * (q[i] * q[j]);
+        };
+        return below(0, 1) || below(0, 2) || below(0, 3) || below(1, 2) || below(1, 3) || below(2, 3);
     }
     [[nodiscard]] double badness(TetId t) const {
         const auto& c = mesh_.tets().corners(t);

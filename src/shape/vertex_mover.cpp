@@ -23,6 +23,7 @@ constexpr double kFlatCosine = 0.99996;  // of half a degree: where the input is
 constexpr std::array kFineSteps{0.1, -0.1, 0.03, -0.03, 0.01, -0.01, 0.003, -0.003};  // and small steps, in reaches, are all that fit between copies
 constexpr std::size_t kTrials = 3;   // how many of the best candidates are tried in earnest where the boundary may still refuse them
 constexpr std::size_t kExcusedTrials = 12;  // and where the star has tetrahedra that are excused, which candidates do not know
+constexpr std::size_t kMostFailures = 6;  // faces of cavities that are remembered
 constexpr double kRefused = std::numeric_limits<double>::infinity();  // worse than any shape: the place itself is not to be had
 
 }  // namespace
@@ -139,6 +140,7 @@ bool VertexMover::take_out() {
 }
 
 void VertexMover::judge_filling() {
+    failures_.clear();
     filling_cosine_.resize(filling_.size());
     for (std::size_t i = 0; i < filling_.size(); ++i) filling_cosine_[i] = judge_.counts(filling_[i]) ? judge_.badness(filling_[i]) : 0;
     worst_filling_ = static_cast<std::size_t>(std::max_element(filling_cosine_.begin(), filling_cosine_.end()) - filling_cosine_.begin());
@@ -165,16 +167,40 @@ TetId VertexMover::conflicting_tet(const Vec3& p, double limit) {
     return mesh_.triangulation().locate(p, worst);
 }
 
+/// Candidates for one hole mostly fail on the same few faces. A face between a tetrahedron in conflict with p and one that isn't is on the boundary of p's
+/// cavity, which need not be found for that.
+bool VertexMover::fails_like_others(StarJudge& star, const Vec3& p) {
+    const Triangulation& tri = mesh_.triangulation();
+    for (const BoundaryFace& face : failures_)
+        if (!star.take(face) && tri.in_conflict(face.inside.tet(), p) && !tri.in_conflict(face.outside.tet(), p)) {
+            note_failure(BoundaryFace{face});
+            return true;
+        }
+    return false;
+}
+
+void VertexMover::note_failure(const BoundaryFace& face) {
+    const auto same = std::find_if(failures_.begin(), failures_.end(), [&](const BoundaryFace& f) { return f.inside == face.inside; });
+    if (same != failures_.end()) failures_.erase(same);
+    else if (failures_.size() == kMostFailures) failures_.pop_back();
+    failures_.insert(failures_.begin(), face);
+}
+
 double VertexMover::try_point(const Vec3& p, double limit) {
     Triangulation& tri = mesh_.triangulation();
     ++statistics_.evaluations;
+    StarJudge known(mesh_, judge_, where_, p, limit);
+    if (fails_like_others(known, p)) return kRefused;
     const TetId seed = conflicting_tet(p, limit);
     if (!seed.valid()) return kRefused;
     // Where the cavity is in two cells the point encroaches what is between them: any tetrahedron of it tells the cell.
     const bool inside = where_.carrier == CarrierKind::region;
     if (inside && mesh_.cell(seed).value() != where_.carrier_id) return kRefused;
     StarJudge star(mesh_, judge_, where_, p, limit);
-    if (!tri.grow_conflict_cavity(p, seed, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) return kRefused;
+    if (!tri.grow_conflict_cavity(p, seed, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) {
+        note_failure(cavity_.boundary.back());
+        return kRefused;
+    }
     if (cavity_.boundary.size() > kMostTets) return kRefused;
     for (std::size_t i = 0; i < filling_.size(); ++i)
         if (filling_cosine_[i] > limit && !tri.in_last_cavity(filling_[i])) return kRefused;
