@@ -210,10 +210,11 @@ double VertexMover::try_point(const Vec3& p, double limit) {
 }
 
 /// Is everything that changed at least as good as `limit`, and nothing labelled in it encroached?
-bool VertexMover::fits(double limit) const {
+bool VertexMover::fits(double limit, bool is_judged) const {
     for (const TetId t : changed_) {
         if (!mesh_.tets().is_live(t)) continue;
         if (boundary_.has_encroached(t)) return false;
+        if (is_judged) continue;
         if (judge_.counts(t) && judge_.badness(t) > limit && !(excuses && excuses(t) && judge_.shape_badness(t) <= star_cosine_)) return false;
     }
     return true;
@@ -229,7 +230,7 @@ double VertexMover::unexcused_star_cosine(double goal) const {
 }
 
 /// Puts the vertex at p, if what comes of it is as promised.
-bool VertexMover::put(const Vec3& p, double limit) {
+bool VertexMover::put(const Vec3& p, double judged, double limit) {
     Triangulation& tri = mesh_.triangulation();
     if (!tri.find_conflict_cavity(p, filling_[0], cavity_)) return false;
     std::erase_if(filling_, [&](TetId t) { return tri.in_last_cavity(t); });
@@ -237,7 +238,9 @@ bool VertexMover::put(const Vec3& p, double limit) {
     mesh_.reinsert(vertex_, cavity_, where_);
     changed_ = tri.new_tets();
     changed_.insert(changed_.end(), filling_.begin(), filling_.end());
-    if (fits(limit)) {
+    // Inside a cell the trial judged the very tetrahedra that are there now, by a bound as tight, unless some are excused.
+    const bool is_judged = where_.carrier == CarrierKind::region && judged <= limit && !(beside_excused_ && excuses);
+    if (fits(limit, is_judged)) {
         note(false);
         return true;
     }
@@ -280,7 +283,7 @@ bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
 bool VertexMover::put_best(double limit, std::size_t trials) {
     std::stable_sort(ranked_.begin(), ranked_.end(), [](const Candidate& a, const Candidate& b) { return a.cosine < b.cosine; });
     for (std::size_t k = 0; k < std::min(trials, ranked_.size()); ++k)
-        if (put(ranked_[k].point, limit)) return true;
+        if (put(ranked_[k].point, ranked_[k].cosine, limit)) return true;
     return false;
 }
 
@@ -293,7 +296,7 @@ bool VertexMover::smooth(VertexId v, double floor) {
     if (proposals_.empty() || norm(proposals_[0] - home_) < 0.01 * mean_edge_ || !take_out()) return false;
     const double limit = std::max(floor, star_cosine_);
     for (const Vec3& p : proposals_)
-        if (try_point(p, limit) <= limit && put(p, limit)) {
+        if (const double cosine = try_point(p, limit); cosine <= limit && put(p, cosine, limit)) {
             ++statistics_.smoothings;
             return true;
         }

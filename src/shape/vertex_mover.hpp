@@ -69,7 +69,7 @@ private:
     void put_back();
     bool put_best(double limit, std::size_t trials);
     void note(bool removed);
-    bool put(const Vec3& p, double limit);
+    bool put(const Vec3& p, double judged, double limit);
     void propose(TetId worst, unsigned samples);
     void propose_gradients(TetId worst, double reach);
     [[nodiscard]] bool is_flat_at_acute() const;
@@ -82,7 +82,7 @@ private:
     [[nodiscard]] bool fails_like_others(StarJudge& star, const Vec3& p);
     void note_failure(const BoundaryFace& face);
     [[nodiscard]] bool encroaches_nothing();
-    [[nodiscard]] bool fits(double limit) const;
+    [[nodiscard]] bool fits(double limit, bool is_judged = false) const;
     [[nodiscard]] double unexcused_star_cosine(double goal) const;
 
     ConformingMesh& mesh_;
