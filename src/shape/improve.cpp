@@ -80,7 +80,7 @@ void ShapeImprover::collect_bad() {
     left_.clear();
     for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
         const TetId t{i};
-        if (!judge_.counts(t)) continue;
+        if (!judge_.counts(t) || is_surely_good(t)) continue;
         const double cosine = badness_of(t);
         if (cosine > goal_cosine_ && !is_left_alone(t)) left_.push_back(listed(t, cosine));
     }
@@ -96,7 +96,7 @@ void ShapeImprover::touch(const std::vector<TetId>& tets) {
         if (!mesh_.tets().is_live(t)) continue;
         for (const VertexId v : mesh_.tets().corners(t))
             if (v != kInfiniteVertex) touched_[v.index()] = clock_;
-        if (!judge_.counts(t)) continue;
+        if (!judge_.counts(t) || is_surely_good(t)) continue;
         if (const double cosine = badness_of(t); cosine > goal_cosine_ && !is_left_alone(t)) push(t, cosine);
     }
 }

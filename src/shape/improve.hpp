@@ -93,6 +93,8 @@ private:
     RunGuard::Verdict try_afresh();
     void collect_bad();
     [[nodiscard]] double badness_of(TetId t);
+    /// Is badness_of(t) certainly at most the goal? Mostly found faster than the badness.
+    [[nodiscard]] bool is_surely_good(TetId t) const { return !refiner_.knows_forced() && judge_.is_surely_good(t); }
     [[nodiscard]] bool is_left_alone(TetId t) const;
     void leave_forced_alone();
     void touch(const std::vector<TetId>& tets);
