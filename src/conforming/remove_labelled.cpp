@@ -235,6 +235,15 @@ private:
 
 bool ConformingMesh::remove(const Hole& hole) {
     if (info(hole.vertex).carrier == CarrierKind::input_vertex) return false;
+    if (std::none_of(hole.star.begin(), hole.star.end(), [&](TetId t) { return has_labels(t); })) {
+        // Nothing to inherit but the one cell that the star is in.
+        const CellId cell = cell_[hole.star[0].index()];
+        tri_.remove_vertex(hole);
+        fit_arrays();
+        for (const TetId t : tri_.new_tets()) cell_[t.index()] = cell;
+        --vertex_count_;
+        return true;
+    }
     HoleLabeller labeller(*this, hole);
     if (!labeller.run()) return false;
     for (const TetId t : hole.star) drop_labels(t);

@@ -11,16 +11,22 @@
 
 namespace wellmesh {
 
-/// Fills one hole; lives for one call of find_hole.
+/// Fills one hole; lives for one call of find_hole, on the hole's scratch.
 class HoleFiller {
 public:
-    HoleFiller(Triangulation& mesh, Hole& hole) : mesh_(mesh), hole_(hole) {}
+    HoleFiller(Triangulation& mesh, Hole& hole) : mesh_(mesh), hole_(hole), open_(hole.scratch.open), candidates_(hole.scratch.candidates), open_at_(hole.scratch.open_at) {
+        open_.clear();
+        open_at_.clear();
+    }
 
     bool fill() {
         collect_boundary();
+        candidates_.clear();
+        for (std::uint32_t d = 1; d < mesh_.local_count_; ++d) candidates_.push_back(d);
         while (!open_.empty()) {
             const Open face = open_.back();
             open_.pop_back();
+            count(face.corners, -1);
             if (!wrap(face)) return false;
             if (hole_.filling.size() > 8 * hole_.boundary.size() + 64) return false;  // can't happen: guards against a broken tie rule
         }
@@ -28,13 +34,8 @@ public:
     }
 
 private:
-    using Slots = std::array<std::uint32_t, 3>;  // local vertex numbers; 0 is infinity
-    struct Open {
-        Slots corners;          // listed so that the wanted apex lies on the positive side
-        std::uint64_t key;      // of the unordered triple
-        std::uint32_t owner;    // what is behind: boundary index with top bit, or 4 * filling + face
-        VertexId behind;        // corner of the tetrahedron behind that is opposite to this face
-    };
+    using Slots = Hole::Slots;
+    using Open = Hole::OpenFace;
 
     static std::uint64_t key_of(Slots s) {
         std::sort(s.begin(), s.end());
@@ -61,7 +62,16 @@ private:
             const TetFace outside = mesh_.tets_.across(inside);
             open_.push_back({s, key_of(s), static_cast<std::uint32_t>(hole_.boundary.size()) | Hole::kBoundaryBit,
                              mesh_.tets_.corner(outside.tet(), outside.face())});
+            count(s, 1);
             hole_.boundary.push_back({inside, outside});
+        }
+    }
+
+    /// Keeps count of the open faces at each vertex. One without has no tetrahedron to come: it is a candidate no more.
+    void count(const Slots& corners, std::int32_t by) {
+        for (const std::uint32_t s : corners) {
+            if (s >= open_at_.size()) open_at_.resize(s + 1, 0);
+            open_at_[s] += by;
         }
     }
 
@@ -93,23 +103,22 @@ private:
     }
 
     std::uint32_t best_apex(Slots& s, VertexId behind) {
-        const auto count = mesh_.local_count_;
         constexpr std::uint32_t kNobody = 0xffffffffU;
         std::uint32_t best = kNobody;
         if (s[0] == 0 || s[1] == 0 || s[2] == 0) {
             // (s0, s1, inf, d) positive means that hull face (s1, s0, d) has its positive side outside.
             while (s[2] != 0) s = {s[1], s[2], s[0]};
-            for (std::uint32_t d = 1; d < count; ++d) {
+            for (std::uint32_t d = 1; d < mesh_.local_count_; ++d) {
                 if (d == s[0] || d == s[1] || collinear(at(s[0]), at(s[1]), at(d)) || folds_back(s[0], s[1], mesh_.point(behind), d)) continue;
                 if (best == kNobody || beats_ghost(s[1], s[0], best, d)) best = d;
             }
             return best;
         }
         const Vec3 &a = at(s[0]), &b = at(s[1]), &c = at(s[2]);
-        for (std::uint32_t d = 1; d < count; ++d) {
+        for (const std::uint32_t d : candidates_) {
             if (d == s[0] || d == s[1] || d == s[2]) continue;
             if (mesh_.filter_.orient3d(a, b, c, at(d)) != Sign::positive) continue;
-            if (best == kNobody || mesh_.filter_.insphere_perturbed(a, b, c, at(best), at(d)) == Sign::positive) best = d;
+            if (best == kNobody || mesh_.filter_.insphere_perturbed_padded(a, b, c, at(best), at(d)) == Sign::positive) best = d;
         }
         if (best == kNobody && has_infinity_) return 0;
         return best;
@@ -138,12 +147,15 @@ private:
             auto it = std::find_if(open_.begin(), open_.end(), [&](const Open& o) { return o.key == key; });
             if (it == open_.end()) {
                 open_.push_back({mine, key, 4 * index + f, vertex(corners[f])});
+                count(mine, 1);
             } else {
                 pair(index, f, it->owner);
+                count(mine, -1);
                 *it = open_.back();
                 open_.pop_back();
             }
         }
+        std::erase_if(candidates_, [&](std::uint32_t d) { return open_at_[d] == 0; });
         return true;
     }
 
@@ -154,7 +166,9 @@ private:
 
     Triangulation& mesh_;
     Hole& hole_;
-    std::vector<Open> open_;
+    std::vector<Open>& open_;
+    std::vector<std::uint32_t>& candidates_;  // finite vertices that a tetrahedron may still get
+    std::vector<std::int32_t>& open_at_;      // open faces at each vertex
     bool has_infinity_ = false;
 };
 

@@ -49,6 +49,20 @@ struct Hole {
     /// set, index into `boundary`.
     std::vector<std::array<std::uint32_t, 4>> filling_opposite;
     static constexpr std::uint32_t kBoundaryBit = 0x80000000U;
+
+    using Slots = std::array<std::uint32_t, 3>;  // local vertex numbers; 0 is infinity
+    struct OpenFace {
+        Slots corners;        // listed so that the wanted apex lies on the positive side
+        std::uint64_t key;    // of the unordered triple
+        std::uint32_t owner;  // what is behind: boundary index with top bit, or 4 * filling + face
+        VertexId behind;      // corner of the tetrahedron behind that is opposite to this face
+    };
+    /// Of the search; of no use afterwards.
+    struct Scratch {
+        std::vector<OpenFace> open;
+        std::vector<std::uint32_t> candidates;
+        std::vector<std::int32_t> open_at;
+    } scratch;
 };
 
 /// Takes part in bulk insertion.
@@ -82,6 +96,10 @@ public:
     [[nodiscard]] bool in_box(const Vec3& p) const {
         return low_.x <= p.x && p.x <= high_.x && low_.y <= p.y && p.y <= high_.y && low_.z <= p.z && p.z <= high_.z;
     }
+
+    /// That box.
+    [[nodiscard]] const Vec3& low() const { return low_; }
+    [[nodiscard]] const Vec3& high() const { return high_; }
 
     /// Starts from four vertices that are not coplanar (ids), already added by add_point.
     void start(VertexId a, VertexId b, VertexId c, VertexId d);

@@ -57,14 +57,8 @@ inline std::array<Vec3, 4> inward_face_normals(const Vec3& a, const Vec3& b, con
 /// Returned by the cosine functions for a flat or inverted tetrahedron: worse than any angle.
 inline constexpr double kNoAngleCosine = 2;
 
-/// Cosine of the smallest dihedral angle (the largest of the six cosines); kNoAngleCosine if the tetrahedron is flat or inverted in
-/// rounded arithmetic or has a corner that is not finite. Larger is worse. For hot loops: four divisions, one square root, no
-/// trigonometry; 1 - cos resolves angles down to about 1e-6 degrees.
-/// Squares d |d| / (|n_i|^2 |n_j|^2) are compared instead of the cosines d / (|n_i| |n_j|); they are multiplied in an order that
-/// neither over- nor underflows while |n|^2 ~ L^4 does not (1e-76 < L < 1e76).
-inline double max_cos_dihedral(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    const std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
-    if (!(dot(b - a, n[1]) > 0)) return kNoAngleCosine;  // catches NaN as well
+/// max_cos_dihedral() from the inward_face_normals() of a tetrahedron that is known to be positive.
+inline double max_cos_of_normals(const std::array<Vec3, 4>& n) {
     const double q0 = 1 / squared_norm(n[0]), q1 = 1 / squared_norm(n[1]), q2 = 1 / squared_norm(n[2]), q3 = 1 / squared_norm(n[3]);
     if (!(q0 + q1 + q2 + q3 < std::numeric_limits<double>::infinity())) return kNoAngleCosine;
     const auto signed_square = [](double negative_dot, double qi, double qj) { return (-negative_dot * qi) * (std::abs(negative_dot) * qj); };
@@ -74,6 +68,17 @@ inline double max_cos_dihedral(const Vec3& a, const Vec3& b, const Vec3& c, cons
     const double worst = std::max(std::max(std::max(s01, s02), std::max(s03, s12)), std::max(s13, s23));
     // A tetrahedron has an angle of at most arccos(1/3), so `worst` is positive.
     return std::sqrt(std::max(worst, 0.0));
+}
+
+/// Cosine of the smallest dihedral angle (the largest of the six cosines); kNoAngleCosine if the tetrahedron is flat or inverted in
+/// rounded arithmetic or has a corner that is not finite. Larger is worse. For hot loops: four divisions, one square root, no
+/// trigonometry; 1 - cos resolves angles down to about 1e-6 degrees.
+/// Squares d |d| / (|n_i|^2 |n_j|^2) are compared instead of the cosines d / (|n_i| |n_j|); they are multiplied in an order that
+/// neither over- nor underflows while |n|^2 ~ L^4 does not (1e-76 < L < 1e76).
+inline double max_cos_dihedral(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
+    if (!(dot(b - a, n[1]) > 0)) return kNoAngleCosine;  // catches NaN as well
+    return max_cos_of_normals(n);
 }
 
 /// max_cos_dihedral(a, b, c, d) > cosine, up to rounding, for 0 < cosine: no division or root, and it ends with the first such angle.

@@ -64,19 +64,25 @@ double ShapeImprover::badness_of(TetId t) {
     return kNoAngleCosine;
 }
 
-void ShapeImprover::push(TetId t, double cosine) {
-    heap_.push_back({cosine, mesh_.tets().corners(t)});
-    std::push_heap(heap_.begin(), heap_.end());
+ShapeImprover::Bad ShapeImprover::listed(TetId t, double badness) const {
+    const Corners& corners = mesh_.tets().corners(t);
+    return {badness, corners, blocks_.of(mesh_.point(corners[0]))};
+}
+
+void ShapeImprover::push(TetId t, double badness) {
+    heap_.push_back(listed(t, badness));
+    std::push_heap(heap_.begin(), heap_.end(), IsLater{});
 }
 
 void ShapeImprover::collect_bad() {
+    blocks_ = Blocks(mesh_.triangulation().low(), mesh_.triangulation().high(), mesh_.tets().live());
     heap_.clear();
     left_.clear();
     for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
         const TetId t{i};
-        if (!judge_.counts(t)) continue;
+        if (!judge_.counts(t) || is_surely_good(t)) continue;
         const double cosine = badness_of(t);
-        if (cosine > goal_cosine_ && !is_left_alone(t)) left_.push_back({cosine, mesh_.tets().corners(t)});
+        if (cosine > goal_cosine_ && !is_left_alone(t)) left_.push_back(listed(t, cosine));
     }
 }
 
@@ -90,7 +96,7 @@ void ShapeImprover::touch(const std::vector<TetId>& tets) {
         if (!mesh_.tets().is_live(t)) continue;
         for (const VertexId v : mesh_.tets().corners(t))
             if (v != kInfiniteVertex) touched_[v.index()] = clock_;
-        if (!judge_.counts(t)) continue;
+        if (!judge_.counts(t) || is_surely_good(t)) continue;
         if (const double cosine = badness_of(t); cosine > goal_cosine_ && !is_left_alone(t)) push(t, cosine);
     }
 }
@@ -161,9 +167,9 @@ RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) 
     tried_.resize(touched_.size());
     heap_.insert(heap_.end(), left_.begin(), left_.end());
     left_.clear();
-    std::make_heap(heap_.begin(), heap_.end());
+    std::make_heap(heap_.begin(), heap_.end(), IsLater{});
     while (!heap_.empty()) {
-        std::pop_heap(heap_.begin(), heap_.end());
+        std::pop_heap(heap_.begin(), heap_.end(), IsLater{});
         Bad bad = heap_.back();
         heap_.pop_back();
         const TetId t = find_tet(mesh_, bad.corners);

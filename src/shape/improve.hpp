@@ -20,6 +20,7 @@
 #include "core/run_guard.hpp"
 #include "refinement/refine.hpp"
 #include "shape/best_insertion.hpp"
+#include "shape/blocks.hpp"
 #include "shape/chains.hpp"
 #include "shape/tet_judge.hpp"
 #include "shape/thin_out.hpp"
@@ -58,7 +59,12 @@ private:
     struct Bad {
         double badness = 0;
         Corners corners{};
+        std::uint32_t block = 0;  // of space
         friend bool operator<(const Bad& a, const Bad& b) { return a.badness != b.badness ? a.badness < b.badness : b.corners < a.corners; }
+    };
+    /// Block by block, so that what is worked on stays in the cache; the worst of a block first.
+    struct IsLater {
+        bool operator()(const Bad& a, const Bad& b) const { return a.block != b.block ? a.block > b.block : a < b; }
     };
     struct Stuck {
         std::uint64_t when = 0;
@@ -87,10 +93,13 @@ private:
     RunGuard::Verdict try_afresh();
     void collect_bad();
     [[nodiscard]] double badness_of(TetId t);
+    /// Is badness_of(t) certainly at most the goal? Mostly found faster than the badness.
+    [[nodiscard]] bool is_surely_good(TetId t) const { return !refiner_.knows_forced() && judge_.is_surely_good(t); }
     [[nodiscard]] bool is_left_alone(TetId t) const;
     void leave_forced_alone();
     void touch(const std::vector<TetId>& tets);
     void push(TetId t, double badness);
+    [[nodiscard]] Bad listed(TetId t, double badness) const;
     [[nodiscard]] double worst_cosine() const;
 
     ConformingMesh& mesh_;
@@ -102,6 +111,7 @@ private:
     Chains chains_;
     Thinning thinning_;
 
+    Blocks blocks_;
     double goal_cosine_ = 1;
     bool leaves_forced_ = false;
     std::uint64_t clock_ = 0, pass_ = 0, splits_ = 0;

@@ -22,10 +22,12 @@ public:
         const auto c = mesh_.tets().face_corners(b.inside);
         if (c[0] == kInfiniteVertex || c[1] == kInfiniteVertex || c[2] == kInfiniteVertex) return true;
         const Vec3 &p0 = mesh_.point(c[0]), &p1 = mesh_.point(c[1]), &p2 = mesh_.point(c[2]);
-        const double badness = judge_.badness(p0, p1, p2, point_, mesh_.cell(behind));
-        if (badness <= limit_) {
-            worst_ = std::max(worst_, badness);
-            return true;
+        if (!TetJudge::is_surely_worse(p0, p1, p2, point_, limit_)) {
+            const double badness = judge_.badness(p0, p1, p2, point_, mesh_.cell(behind));
+            if (badness <= limit_) {
+                worst_ = std::max(worst_, badness);
+                return true;
+            }
         }
         // A flat tetrahedron on a subface of the point's own carrier will belong to the other side.
         return where_.carrier != CarrierKind::region && mesh_.facet_at(b.inside).valid() && side_of_equatorial_sphere(p0, p1, p2, point_) == Sign::positive;

@@ -44,7 +44,21 @@ public:
         if (squared_radius > kSizeTolerance * kSizeTolerance * size.max_squared_circumradius ||
             det > 6 * size.max_volume)
             return kNoAngleCosine;
-        return std::max(max_cos_dihedral(a, b, c, d), aspect_badness(squared_radius / (det * det), {cross(d - b, c - b), vw, wu, uv}));
+        const std::array<Vec3, 4> normals{cross(d - b, c - b), vw, wu, uv};
+        return std::max(max_cos_of_normals(normals), aspect_badness(squared_radius / (det * det), normals));
+    }
+    /// Is badness() of abcd certainly more than this cosine by one of its angles? Without a division or a root, for those that fail: most do.
+    [[nodiscard]] static bool is_surely_worse(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double cosine) {
+        if (!(cosine > 0 && cosine < 1)) return false;
+        const std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
+        if (!(dot(b - a, n[1]) > 0)) return true;
+        const std::array<double, 4> q{squared_norm(n[0]), squared_norm(n[1]), squared_norm(n[2]), squared_norm(n[3])};
+        const double bound = kMargin * cosine * cosine;
+        const auto below = [&](std::size_t i, std::size_t j) {
+            const double s = -dot(n[i], n[j]), square = s * s;
+            return s > 0 && square > kLeastCertain && square > bound * (q[i] * q[j]);
+        };
+        return below(0, 1) || below(0, 2) || below(0, 3) || below(1, 2) || below(1, 3) || below(2, 3);
     }
     [[nodiscard]] double badness(TetId t) const {
         const auto& c = mesh_.tets().corners(t);
@@ -75,6 +89,23 @@ public:
         const double det = determinant(u, v, w);
         return std::max(cosine, aspect_badness(squared_norm(scaled_circumcentre(u, v, w)) / (4 * det * det * det * det), inward_face_normals(a, b, c, d)));
     }
+    /// Is shape_badness(t) certainly at most the goal? Without a division or a root, for those that are good: most are.
+    [[nodiscard]] bool is_surely_good(TetId t) const {
+        const auto& k = mesh_.tets().corners(t);
+        const Vec3 &a = mesh_.point(k[0]), &b = mesh_.point(k[1]), &c = mesh_.point(k[2]), &d = mesh_.point(k[3]);
+        const std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
+        const double det = dot(b - a, n[1]), fourth = (det * det) * (det * det);
+        if (!(det > 0 && fourth > kLeastCertain && goal_ > 0)) return false;
+        const std::array<double, 4> q{squared_norm(n[0]), squared_norm(n[1]), squared_norm(n[2]), squared_norm(n[3])};
+        const double bound = goal_ * goal_ / kMargin;
+        const auto above = [&](std::size_t i, std::size_t j) {
+            const double s = -dot(n[i], n[j]);
+            return s <= 0 || s * s <= bound * (q[i] * q[j]);
+        };
+        if (!(above(0, 1) && above(0, 2) && above(0, 3) && above(1, 2) && above(1, 3) && above(2, 3))) return false;
+        // As in aspect_badness().
+        return max_aspect_ == kNoAspect || kMargin * squared_norm(scaled_circumcentre(b - a, c - a, d - a)) * (q[0] + q[1] + q[2] + q[3]) <= fourth * (max_aspect_ * max_aspect_);
+    }
     /// Cosine of the smallest dihedral angle, nothing else.
     [[nodiscard]] double cosine(TetId t) const {
         const auto& c = mesh_.tets().corners(t);
@@ -85,6 +116,9 @@ public:
     static constexpr double kNoAspect = std::numeric_limits<double>::infinity();
 
 private:
+    /// Far beyond rounding; and where products, of two squared areas or so, leave the range of doubles nothing is certain.
+    static constexpr double kMargin = 1 + 1e-12, kLeastCertain = 1e-280;
+
     /// An aspect ratio half above its bound counts as three degrees below an angle of 30: angles come first.
     static constexpr double kAspectWeight = 0.05;
 

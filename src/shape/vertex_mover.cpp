@@ -23,6 +23,7 @@ constexpr double kFlatCosine = 0.99996;  // of half a degree: where the input is
 constexpr std::array kFineSteps{0.1, -0.1, 0.03, -0.03, 0.01, -0.01, 0.003, -0.003};  // and small steps, in reaches, are all that fit between copies
 constexpr std::size_t kTrials = 3;   // how many of the best candidates are tried in earnest where the boundary may still refuse them
 constexpr std::size_t kExcusedTrials = 12;  // and where the star has tetrahedra that are excused, which candidates do not know
+constexpr std::size_t kMostFailures = 6;  // faces of cavities that are remembered
 constexpr double kRefused = std::numeric_limits<double>::infinity();  // worse than any shape: the place itself is not to be had
 
 }  // namespace
@@ -139,6 +140,7 @@ bool VertexMover::take_out() {
 }
 
 void VertexMover::judge_filling() {
+    failures_.clear();
     filling_cosine_.resize(filling_.size());
     for (std::size_t i = 0; i < filling_.size(); ++i) filling_cosine_[i] = judge_.counts(filling_[i]) ? judge_.badness(filling_[i]) : 0;
     worst_filling_ = static_cast<std::size_t>(std::max_element(filling_cosine_.begin(), filling_cosine_.end()) - filling_cosine_.begin());
@@ -165,16 +167,40 @@ TetId VertexMover::conflicting_tet(const Vec3& p, double limit) {
     return mesh_.triangulation().locate(p, worst);
 }
 
+/// Candidates for one hole mostly fail on the same few faces. A face between a tetrahedron in conflict with p and one that isn't is on the boundary of p's
+/// cavity, which need not be found for that.
+bool VertexMover::fails_like_others(StarJudge& star, const Vec3& p) {
+    const Triangulation& tri = mesh_.triangulation();
+    for (const BoundaryFace& face : failures_)
+        if (!star.take(face) && tri.in_conflict(face.inside.tet(), p) && !tri.in_conflict(face.outside.tet(), p)) {
+            note_failure(BoundaryFace{face});
+            return true;
+        }
+    return false;
+}
+
+void VertexMover::note_failure(const BoundaryFace& face) {
+    const auto same = std::find_if(failures_.begin(), failures_.end(), [&](const BoundaryFace& f) { return f.inside == face.inside; });
+    if (same != failures_.end()) failures_.erase(same);
+    else if (failures_.size() == kMostFailures) failures_.pop_back();
+    failures_.insert(failures_.begin(), face);
+}
+
 double VertexMover::try_point(const Vec3& p, double limit) {
     Triangulation& tri = mesh_.triangulation();
     ++statistics_.evaluations;
+    StarJudge known(mesh_, judge_, where_, p, limit);
+    if (fails_like_others(known, p)) return kRefused;
     const TetId seed = conflicting_tet(p, limit);
     if (!seed.valid()) return kRefused;
     // Where the cavity is in two cells the point encroaches what is between them: any tetrahedron of it tells the cell.
     const bool inside = where_.carrier == CarrierKind::region;
     if (inside && mesh_.cell(seed).value() != where_.carrier_id) return kRefused;
     StarJudge star(mesh_, judge_, where_, p, limit);
-    if (!tri.grow_conflict_cavity(p, seed, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) return kRefused;
+    if (!tri.grow_conflict_cavity(p, seed, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) {
+        note_failure(cavity_.boundary.back());
+        return kRefused;
+    }
     if (cavity_.boundary.size() > kMostTets) return kRefused;
     for (std::size_t i = 0; i < filling_.size(); ++i)
         if (filling_cosine_[i] > limit && !tri.in_last_cavity(filling_[i])) return kRefused;
@@ -184,10 +210,11 @@ double VertexMover::try_point(const Vec3& p, double limit) {
 }
 
 /// Is everything that changed at least as good as `limit`, and nothing labelled in it encroached?
-bool VertexMover::fits(double limit) const {
+bool VertexMover::fits(double limit, bool is_judged) const {
     for (const TetId t : changed_) {
         if (!mesh_.tets().is_live(t)) continue;
         if (boundary_.has_encroached(t)) return false;
+        if (is_judged) continue;
         if (judge_.counts(t) && judge_.badness(t) > limit && !(excuses && excuses(t) && judge_.shape_badness(t) <= star_cosine_)) return false;
     }
     return true;
@@ -203,7 +230,7 @@ double VertexMover::unexcused_star_cosine(double goal) const {
 }
 
 /// Puts the vertex at p, if what comes of it is as promised.
-bool VertexMover::put(const Vec3& p, double limit) {
+bool VertexMover::put(const Vec3& p, double judged, double limit) {
     Triangulation& tri = mesh_.triangulation();
     if (!tri.find_conflict_cavity(p, filling_[0], cavity_)) return false;
     std::erase_if(filling_, [&](TetId t) { return tri.in_last_cavity(t); });
@@ -211,7 +238,9 @@ bool VertexMover::put(const Vec3& p, double limit) {
     mesh_.reinsert(vertex_, cavity_, where_);
     changed_ = tri.new_tets();
     changed_.insert(changed_.end(), filling_.begin(), filling_.end());
-    if (fits(limit)) {
+    // Inside a cell the trial judged the very tetrahedra that are there now, by a bound as tight, unless some are excused.
+    const bool is_judged = where_.carrier == CarrierKind::region && judged <= limit && !(beside_excused_ && excuses);
+    if (fits(limit, is_judged)) {
         note(false);
         return true;
     }
@@ -254,7 +283,7 @@ bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
 bool VertexMover::put_best(double limit, std::size_t trials) {
     std::stable_sort(ranked_.begin(), ranked_.end(), [](const Candidate& a, const Candidate& b) { return a.cosine < b.cosine; });
     for (std::size_t k = 0; k < std::min(trials, ranked_.size()); ++k)
-        if (put(ranked_[k].point, limit)) return true;
+        if (put(ranked_[k].point, ranked_[k].cosine, limit)) return true;
     return false;
 }
 
@@ -267,7 +296,7 @@ bool VertexMover::smooth(VertexId v, double floor) {
     if (proposals_.empty() || norm(proposals_[0] - home_) < 0.01 * mean_edge_ || !take_out()) return false;
     const double limit = std::max(floor, star_cosine_);
     for (const Vec3& p : proposals_)
-        if (try_point(p, limit) <= limit && put(p, limit)) {
+        if (const double cosine = try_point(p, limit); cosine <= limit && put(p, cosine, limit)) {
             ++statistics_.smoothings;
             return true;
         }

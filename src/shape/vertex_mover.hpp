@@ -18,6 +18,8 @@
 
 namespace wellmesh {
 
+class StarJudge;
+
 struct MoveStatistics {
     std::uint64_t moves = 0, smoothings = 0, removals = 0, attempts = 0, evaluations = 0, undone = 0;
 };
@@ -67,7 +69,7 @@ private:
     void put_back();
     bool put_best(double limit, std::size_t trials);
     void note(bool removed);
-    bool put(const Vec3& p, double limit);
+    bool put(const Vec3& p, double judged, double limit);
     void propose(TetId worst, unsigned samples);
     void propose_gradients(TetId worst, double reach);
     [[nodiscard]] bool is_flat_at_acute() const;
@@ -77,8 +79,10 @@ private:
     /// Cosine of the star that p would get, more than `limit` as soon as that is certain, infinite if p is not to be had. Leaves p's cavity.
     [[nodiscard]] double try_point(const Vec3& p, double limit);
     [[nodiscard]] TetId conflicting_tet(const Vec3& p, double limit);
+    [[nodiscard]] bool fails_like_others(StarJudge& star, const Vec3& p);
+    void note_failure(const BoundaryFace& face);
     [[nodiscard]] bool encroaches_nothing();
-    [[nodiscard]] bool fits(double limit) const;
+    [[nodiscard]] bool fits(double limit, bool is_judged = false) const;
     [[nodiscard]] double unexcused_star_cosine(double goal) const;
 
     ConformingMesh& mesh_;
@@ -99,6 +103,7 @@ private:
     ConformingMesh::Snapshot star_before_, cavity_before_;
     std::vector<Vec3> proposals_;
     std::vector<Candidate> ranked_;
+    std::vector<BoundaryFace> failures_;  // on which candidates for the hole failed, the latest first
     std::vector<TetId> filling_, changed_;
     std::vector<double> filling_cosine_;
     std::size_t worst_filling_ = 0;

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shortcuts of the judge agree with its full measure, and the blocks of the queue cover space.
+#include "shape/tet_judge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/rng.hpp"
+#include "refinement/refine.hpp"
+#include "shape/blocks.hpp"
+#include "support/staged_mesh.hpp"
+#include "support/synthetic_plcs.hpp"
+
+namespace wellmesh::testing {
+namespace {
+
+double coordinate(std::uint64_t key, std::uint64_t i) { return static_cast<double>(mix64(key, i) >> 11U) * 0x1p-53; }
+
+TEST(TetJudge, WhatIsSurelyWorseIsWorse) {
+    std::size_t sure = 0, worse = 0;
+    for (std::uint64_t k = 0; k < 20000; ++k)
+        for (const double scale : {1e-60, 1e-6, 1.0, 1e60}) {
+            std::array<Vec3, 4> p{};
+            for (std::size_t i = 0; i < 4; ++i) p[i] = {scale * coordinate(k, 3 * i), scale * coordinate(k, 3 * i + 1), scale * coordinate(k, 3 * i + 2)};
+            if (k % 3 == 0) p[3] = p[0] + 0.3 * (p[1] - p[0]) + 0.3 * (p[2] - p[0]);  // flat, up to rounding
+            const double cosine = max_cos_dihedral(p[0], p[1], p[2], p[3]);
+            for (const double limit : {0.5, std::cos(std::numbers::pi / 6), 0.99996, cosine, 1.0, kNoAngleCosine}) {
+                const bool is_sure = TetJudge::is_surely_worse(p[0], p[1], p[2], p[3], limit);
+                EXPECT_TRUE(!is_sure || cosine > limit) << k << ' ' << scale << ' ' << limit;
+                sure += is_sure;
+                worse += cosine > limit && limit < 1;
+            }
+        }
+    EXPECT_GT(static_cast<double>(sure), 0.7 * static_cast<double>(worse)) << "what it is for";
+}
+
+TEST(TetJudge, WhatIsSurelyGoodIsGood) {
+    MeshOptions options;
+    options.size.edge_length = 0.15;
+    StagedMesh staged(transformed(cube(), 3, 0, 1), options);
+    Refiner refiner(staged.mesh, staged.boundary, staged.guard, staged.options);
+    staged.conform();
+    ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
+    TetJudge judge(staged.mesh, refiner.sizes(), 2);
+    for (const double aspect : {TetJudge::kNoAspect, 8.0, 3.5})
+        for (const double angle : {10.0, 30.0, 50.0}) {
+            judge.set_goal(std::cos(angle * std::numbers::pi / 180), aspect);
+            std::size_t sure = 0, good = 0;
+            staged.for_domain([&](TetId t) {
+                const bool is_sure = judge.is_surely_good(t);
+                EXPECT_TRUE(!is_sure || judge.shape_badness(t) <= judge.goal()) << angle;
+                sure += is_sure;
+                good += judge.shape_badness(t) <= judge.goal();
+            });
+            EXPECT_LE(sure, good);
+            if (aspect != 3.5) { EXPECT_GE(static_cast<double>(sure), 0.7 * static_cast<double>(good)) << angle; }
+        }
+}
+
+TEST(Blocks, NeighboursShareOneAndThereAreEnough) {
+    EXPECT_EQ(Blocks().of({5, 6, 7}), 0U);
+    EXPECT_EQ(Blocks({0, 0, 0}, {1, 1, 1}, 1000).of({1, 1, 1}), 0U) << "a small mesh is one block";
+    const Blocks blocks({-1, -1, -1}, {1, 1, 1}, 8 * 4096);
+    std::array<bool, 8> seen{};
+    for (const double x : {-0.5, 0.5})
+        for (const double y : {-0.5, 0.5})
+            for (const double z : {-0.5, 0.5}) {
+                const std::uint32_t block = blocks.of({x, y, z});
+                ASSERT_LT(block, 8U);
+                EXPECT_FALSE(seen[block]);
+                seen[block] = true;
+                EXPECT_EQ(blocks.of({x + 0.4 * x, y, z - 0.4 * z}), block);
+            }
+    EXPECT_EQ(blocks.of({-9, -9, -9}), blocks.of({-0.9, -0.9, -0.9})) << "outside: at the side";
+    EXPECT_LT(Blocks({0, 0, 0}, {1, 0, 0}, 1U << 30U).of({1, 0, 0}), 1U << 30U) << "flat boxes";
+}
+
+}  // namespace
+}  // namespace wellmesh::testing
