@@ -85,6 +85,7 @@ private:
     RunGuard::Verdict split_worse_than(double cosine);
     RunGuard::Verdict split_or_go_back(double cosine, const ConformingMesh& last);
     RunGuard::Verdict try_afresh();
+    RunGuard::Verdict grade_afresh();
     void collect_bad();
     [[nodiscard]] double badness_of(TetId t);
     [[nodiscard]] bool is_left_alone(TetId t) const;
