@@ -97,8 +97,9 @@ class Models:
             plain = plain_copy(model, folder)
             row["mesh"] = made = self.mesh(model, plain, folder, limit)
             row["verdict"], row["ok"] = "ok" if made["ok"] else made["why"], made["ok"]
-            if "vertices" not in made and not sound:
+            if "vertices" not in made:
                 self.treat(row, model, folder, limit)
+                row["ok"] = row["ok"] and not sound
             if self.arguments.tetgen and sound and "vertices" in made:
                 self.compare(row, model, plain, folder)
         return row
@@ -130,13 +131,14 @@ class Models:
         row["ok"] = row["ok"] and (again["ok"] or ("vertices" not in again and again["exit"] in (2, 4)))
 
     def compare(self, row, model, plain, folder):
-        """Vertices beside TetGen's `-pq2`: without a size, and with the same bound on volumes. TetGen writes beside its input, which is a copy."""
+        """Vertices beside TetGen's `-pq2`: without a size, and with the same bound on volumes. Bounds on the volumes of regions that the file states
+        count for both (TetGen's `aA`). TetGen writes beside its input, which is a copy."""
         copy = os.path.join(folder, "rival" + os.path.splitext(plain)[1])
         shutil.copyfile(plain, copy)
         limit = self.arguments.tetgen_limit
-        row["rival"] = {"plain": tetgen(self.arguments.tetgen, "-pq2NEF", copy, limit)[1]}
+        row["rival"] = {"plain": tetgen(self.arguments.tetgen, "-pq2aANEF", copy, limit)[1]}
         volume = diagonal(points_of(plain)) ** 3 * VOLUME_OF_DIAGONAL
-        theirs = tetgen(self.arguments.tetgen, f"-pq2a{volume:.17g}NEF", copy, limit)[1]
+        theirs = tetgen(self.arguments.tetgen, f"-pq2a{volume:.17g}aANEF", copy, limit)[1]
         if theirs:
             mesh, report = os.path.join(folder, "sized.mesh"), os.path.join(folder, "sized.json")
             result = self.run(["mesh", model, "-o", mesh, "--quiet", "--json", report, "--max-volume", repr(volume), *self.arguments.option], limit)
@@ -207,7 +209,7 @@ def main():
     if not entries:
         parser.error("no model has such a name")
     if arguments.tetgen:
-        print(f"rival: {package_version(arguments.tetgen)}, -pq2; `size`: both with a greatest volume of (diagonal / 30)^3 / 8.5")
+        print(f"rival: {package_version(arguments.tetgen)}, -pq2aA; `size`: both with a greatest volume of (diagonal / 30)^3 / 8.5")
     print(f"{'':40} {'input':>6} {'':4} {'':8} {'':9} {'outside exemptions':>22} {'':7} {'':6} {'manifest':>10} {'over -pq2':>13}")
     print(f"{'model':40} {'verts':>6} exit {'vertices':>8} {'tets':>9} {'min dih':>7} {'R/L':>6} {'exempt':>7} {'seconds':>7} {'MiB':>6} {'TetGen -pq':>10} {'plain':>6} {'size':>6}  verdict")
     models, rows = Models(arguments), []
