@@ -21,6 +21,7 @@ struct DelaunayCommand {
     std::string points, json;
     std::vector<std::string> outputs;
     WriteOptions write;
+    unsigned threads = 0;
 };
 
 int run(const DelaunayCommand& arguments, Interrupt& interrupt) {
@@ -35,7 +36,7 @@ int run(const DelaunayCommand& arguments, Interrupt& interrupt) {
     const double read_seconds = reading.seconds();
 
     const Stopwatch triangulating;
-    const DelaunayResult result = triangulate_points(points);
+    const DelaunayResult result = triangulate_points(points, arguments.threads);
     const double delaunay_seconds = triangulating.seconds();
 
     const Interrupt::Cooperative cooperative(interrupt);
@@ -63,6 +64,7 @@ void add_delaunay_command(CLI::App& program, Command& selected) {
     auto arguments = std::make_shared<DelaunayCommand>();
     command.add_option("POINTS", arguments->points, "points: .node .xyz .ply")->required()->type_name("");
     add_output_flag(command, arguments->outputs, "mesh to write: .mesh .vtu .msh .inp .node/.ele, by extension; may be given several times");
+    add_threads_flag(command, arguments->threads);
     add_write_flags(command, arguments->write);
     command.add_option("--json", arguments->json, "write the timings to this file instead of standard output")->type_name("FILE");
     command.callback([&selected, arguments] { selected = [arguments](Interrupt& interrupt) { return run(*arguments, interrupt); }; });

@@ -8,7 +8,7 @@
 namespace wellmesh {
 
 void Triangulation::ensure_marks() {
-    if (mark_.size() < tets_.slots()) mark_.resize(tets_.slots() + tets_.slots() / 2 + 64, 0);
+    if (mark_.size() < tets_.slots()) mark_.resize(tets_.slots() + tets_.slots() / 8 + 64, 0);
 }
 
 void Triangulation::next_epoch() {

@@ -155,25 +155,29 @@ bool Triangulation::insert_all(std::span<const Vec3> points, const Checkpoint& c
     vertices_.clear();
     vertices_.reserve(points.size());
     for (const Vec3& p : points) vertices_.push_back({p});
-    return insert_in_order(biased_spatial_order(points), checkpoint);
+    const std::vector<std::uint32_t> order = biased_spatial_order(points);
+    if (!start_from(order)) return false;
+    insert_one_by_one(order, checkpoint);
+    return true;
 }
 
-bool Triangulation::insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order) {
+bool Triangulation::insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order, Workers& workers) {
     vertices_.clear();
     vertices_.reserve(points.size());
     for (const std::uint32_t i : order) vertices_.push_back({points[i]});
     std::vector<std::uint32_t> identity(order.size());
     std::iota(identity.begin(), identity.end(), 0U);
-    return insert_in_order(identity, {});
+    if (!start_from(identity)) return false;
+    insert_on(workers, identity);
+    return true;
 }
 
-bool Triangulation::insert_in_order(std::span<const std::uint32_t> order, const Checkpoint& checkpoint) {
+/// The first tetrahedron, of four points that are not coplanar, early in the order.
+bool Triangulation::start_from(std::span<const std::uint32_t> order) {
     tets_.clear();
-    tets_.reserve(7 * vertices_.size());
-    duplicates_ = 0;
+    tets_.reserve(7 * vertices_.size() + 64);
+    duplicates_.clear();
     if (order.size() < 4) return false;
-
-    // Four points that are not coplanar, early in the order.
     std::array<VertexId, 4> first{VertexId{order[0]}, {}, {}, {}};
     std::size_t found = 1;
     for (std::size_t i = 1; i < order.size() && found < 4; ++i) {
@@ -184,6 +188,10 @@ bool Triangulation::insert_in_order(std::span<const std::uint32_t> order, const 
     }
     if (found < 4) return false;
     start(first[0], first[1], first[2], first[3]);
+    return true;
+}
+
+void Triangulation::insert_one_by_one(std::span<const std::uint32_t> order, const Checkpoint& checkpoint) {
     Cavity cavity;
     TetId near = last_located_;
     constexpr std::size_t kBetweenCheckpoints = 512;  // insertions, of microseconds mostly
@@ -193,13 +201,12 @@ bool Triangulation::insert_in_order(std::span<const std::uint32_t> order, const 
         if (is_inserted(v)) continue;
         if (++inserted % kBetweenCheckpoints == 0) pass(checkpoint);
         if (!find_conflict_cavity(point(v), near, cavity)) {
-            ++duplicates_;
+            duplicates_.push_back({v, cavity.duplicate});
             continue;
         }
         insert_vertex(v, cavity);
         near = last_located_;
     }
-    return true;
 }
 
 }  // namespace wellmesh

@@ -16,7 +16,20 @@ TetId Triangulation::locate(const Vec3& p, TetId hint) const {
                 break;
             }
     }
-    if (tets_.is_ghost(t)) t = tets_.across(t, 3).tet();
+    return walk<false>(p, t);
+}
+
+/// @return an invalid id if the way leaves the zone.
+template <bool kZoned>
+TetId Triangulation::walk(const Vec3& p, TetId t) const {
+    const auto may_enter = [this](TetId next) {
+        if constexpr (kZoned) return is_mine(next);
+        else return true;
+    };
+    if (tets_.is_ghost(t)) {
+        t = tets_.across(t, 3).tet();
+        if (!may_enter(t)) return {};
+    }
     // A visibility walk ends in a Delaunay triangulation whatever face is taken first [Devillers02]; the one it came through is skipped.
     TetId from{};
     unsigned start = 0;
@@ -35,6 +48,7 @@ TetId Triangulation::locate(const Vec3& p, TetId hint) const {
             }
         }
         if (!next.valid()) break;
+        if (!may_enter(next)) return {};
         from = t;
         t = next;
         start = static_cast<unsigned>(steps) & 3U;
@@ -42,6 +56,9 @@ TetId Triangulation::locate(const Vec3& p, TetId hint) const {
     }
     return t;
 }
+
+template TetId Triangulation::walk<false>(const Vec3& p, TetId t) const;
+template TetId Triangulation::walk<true>(const Vec3& p, TetId t) const;
 
 void Triangulation::find_star(VertexId v, std::vector<TetId>& star) {
     star.clear();

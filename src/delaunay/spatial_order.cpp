@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Biased randomised insertion order [Amenta03] with a Hilbert curve in each round [Skilling04 gives the transform].
+// Biased randomised insertion order [Amenta03] with a Hilbert curve in each round [Hamilton08].
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,37 +13,51 @@ namespace {
 
 constexpr unsigned kBits = 20;  // a coordinate; 60 bits a key
 
-/// Position along the Hilbert curve: Skilling's transform of the axes, then their bits interleaved.
-std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
-    for (std::uint32_t q = 1U << (kBits - 1); q > 1; q >>= 1) {
-        const std::uint32_t p = q - 1;
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (x[i] & q) {
-                x[0] ^= p;
-            } else {
-                const std::uint32_t t = (x[0] ^ x[i]) & p;
-                x[0] ^= t;
-                x[i] ^= t;
+/// One step down the Hilbert curve: the state is how the curve runs through a cube, an octant is three bits x, y, z of the coordinates.
+struct HilbertStep {
+    std::uint8_t position = 0;  // of the octant along the curve
+    std::uint8_t next = 0;      // state within the octant
+};
+constexpr std::size_t kHilbertStates = 24;  // corner where the curve enters (8) times direction in which it leaves (3)
+using HilbertTable = std::array<std::array<HilbertStep, 8>, kHilbertStates>;
+
+/// [Hamilton08], section 2: Gray codes, rotated so that the curve enters at corner e and leaves along axis d.
+constexpr HilbertTable make_hilbert_table() {
+    const auto rotate_left = [](unsigned x, unsigned k) { return ((x << (k % 3)) | (x >> (3 - k % 3))) & 7U; };
+    const auto rotate_right = [rotate_left](unsigned x, unsigned k) { return rotate_left(x, 3 - k % 3); };
+    const auto gray = [](unsigned i) { return i ^ (i >> 1); };
+    const auto gray_inverse = [](unsigned g) { return g ^ (g >> 1) ^ (g >> 2); };
+    const auto trailing_ones = [](unsigned i) { return static_cast<unsigned>(std::countr_one(i)); };
+    HilbertTable table{};
+    for (unsigned e = 0; e < 8; ++e)
+        for (unsigned d = 0; d < 3; ++d)
+            for (unsigned octant = 0; octant < 8; ++octant) {
+                const unsigned w = gray_inverse(rotate_right(octant ^ e, d + 1));
+                const unsigned entry = w == 0 ? 0 : gray(2 * ((w - 1) / 2));
+                const unsigned direction = w == 0 ? 0 : w % 2 == 0 ? trailing_ones(w - 1) % 3 : trailing_ones(w) % 3;
+                const unsigned next_e = e ^ rotate_left(entry, d + 1), next_d = (d + direction + 1) % 3;
+                table[3 * e + d][octant] = {static_cast<std::uint8_t>(w), static_cast<std::uint8_t>(3 * next_e + next_d)};
             }
-        }
-    }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    std::uint32_t t = 0;
-    for (std::uint32_t q = 1U << (kBits - 1); q > 1; q >>= 1)
-        if (x[2] & q) t ^= q - 1;
-    for (std::uint32_t& c : x) c ^= t;
+    return table;
+}
+constexpr HilbertTable kHilbert = make_hilbert_table();
+
+/// Position along the Hilbert curve.
+std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x) {
     std::uint64_t key = 0;
-    for (unsigned b = kBits; b-- > 0;)
-        for (const std::uint32_t c : x) key = (key << 1) | ((c >> b) & 1U);
+    std::size_t state = 0;
+    for (unsigned b = kBits; b-- > 0;) {
+        const HilbertStep step = kHilbert[state][((x[0] >> b) & 1U) | ((x[1] >> b) & 1U) << 1 | ((x[2] >> b) & 1U) << 2];
+        key = (key << 3) | step.position;
+        state = step.next;
+    }
     return key;
 }
 
 /// Points by the round that `round_of` puts them in (below 16), then along the curve.
 template <class RoundOf>
-std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, RoundOf&& round_of) {
+std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, Workers& workers, RoundOf&& round_of) {
     const std::size_t n = points.size();
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(n);
     if (n == 0) return {};
     Vec3 lo = points[0], hi = points[0];
     for (const Vec3& p : points) {
@@ -53,13 +67,24 @@ std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, RoundOf
     const double extent = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
     const double scale = extent > 0 ? static_cast<double>((1U << kBits) - 1) / extent : 0;
     constexpr std::uint64_t kRoundShift = 3 * kBits;
-    for (std::size_t i = 0; i < n; ++i) {
-        const Vec3& p = points[i];
-        const std::array<std::uint32_t, 3> cell{static_cast<std::uint32_t>((p.x - lo.x) * scale), static_cast<std::uint32_t>((p.y - lo.y) * scale),
-                                                static_cast<std::uint32_t>((p.z - lo.z) * scale)};
-        keyed[i] = {(std::uint64_t{round_of(i)} << kRoundShift) | hilbert_key(cell), static_cast<std::uint32_t>(i)};
-    }
-    std::sort(keyed.begin(), keyed.end());
+    using Keyed = std::pair<std::uint64_t, std::uint32_t>;
+    std::vector<Keyed> keyed(n);
+    // Each worker sorts a run; then neighbouring runs are merged, in rounds.
+    std::size_t run = (n + workers.threads() - 1) / workers.threads();
+    workers.for_ranges(n, run, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3& p = points[i];
+            const std::array<std::uint32_t, 3> cell{static_cast<std::uint32_t>((p.x - lo.x) * scale), static_cast<std::uint32_t>((p.y - lo.y) * scale),
+                                                    static_cast<std::uint32_t>((p.z - lo.z) * scale)};
+            keyed[i] = {(std::uint64_t{round_of(i)} << kRoundShift) | hilbert_key(cell), static_cast<std::uint32_t>(i)};
+        }
+        std::sort(keyed.begin() + static_cast<std::ptrdiff_t>(begin), keyed.begin() + static_cast<std::ptrdiff_t>(end));
+    });
+    for (; run < n; run *= 2)
+        workers.for_ranges(n, 2 * run, [&](std::size_t begin, std::size_t end, std::size_t) {
+            const auto at = [&](std::size_t i) { return keyed.begin() + static_cast<std::ptrdiff_t>(std::min(i, end)); };
+            std::inplace_merge(at(begin), at(begin + run), at(end));
+        });
     std::vector<std::uint32_t> order(n);
     for (std::size_t i = 0; i < n; ++i) order[i] = keyed[i].second;
     return order;
@@ -67,17 +92,27 @@ std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, RoundOf
 
 }  // namespace
 
-std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points) {
-    return order_by_rounds(points, [](std::size_t) { return 0U; });
+std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points, Workers& workers) {
+    return order_by_rounds(points, workers, [](std::size_t) { return 0U; });
 }
 
-std::vector<std::uint32_t> biased_spatial_order(std::span<const Vec3> points) {
+std::vector<std::uint32_t> biased_spatial_order(std::span<const Vec3> points, Workers& workers) {
     // A point is in the last round with probability 7/8, in the one before with 7/64, ... [Amenta03]; few rounds are enough.
     constexpr unsigned kRounds = 8;
-    return order_by_rounds(points, [](std::size_t i) {
+    return order_by_rounds(points, workers, [](std::size_t i) {
         const auto octets = static_cast<unsigned>(std::countr_zero(mix64(i) | (std::uint64_t{1} << 63))) / 3;
         return kRounds - 1 - std::min(octets, kRounds - 1);
     });
+}
+
+std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points) {
+    Workers alone(1);
+    return spatial_order(points, alone);
+}
+
+std::vector<std::uint32_t> biased_spatial_order(std::span<const Vec3> points) {
+    Workers alone(1);
+    return biased_spatial_order(points, alone);
 }
 
 }  // namespace wellmesh

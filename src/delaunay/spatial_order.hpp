@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/workers.hpp"
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
@@ -14,5 +15,9 @@ namespace wellmesh {
 
 /// The same in rounds of growing size, each along a Hilbert curve: the order of bulk insertion [Amenta03]. Deterministic.
 [[nodiscard]] std::vector<std::uint32_t> biased_spatial_order(std::span<const Vec3> points);
+
+/// The same orders on several threads.
+[[nodiscard]] std::vector<std::uint32_t> spatial_order(std::span<const Vec3> points, Workers& workers);
+[[nodiscard]] std::vector<std::uint32_t> biased_spatial_order(std::span<const Vec3> points, Workers& workers);
 
 }  // namespace wellmesh

@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "delaunay/tet_store.hpp"
 
-#include "wellmesh/error.hpp"
+#include <utility>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
+#include "wellmesh/error.hpp"
 
 namespace wellmesh {
 namespace {
 
-/// Walks and cavities touch the array at random: with 4 kB pages most visits miss the translation buffer. A hint, nothing depends on it.
-void advise_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
-#ifdef __linux__
-    constexpr std::uintptr_t kHugePage = std::uintptr_t{1} << 21;
-    const auto begin = (reinterpret_cast<std::uintptr_t>(data) + kHugePage - 1) & ~(kHugePage - 1);
-    const auto end = (reinterpret_cast<std::uintptr_t>(data) + bytes) & ~(kHugePage - 1);
-    if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-#endif
-}
+[[noreturn]] void refuse_size() { throw MeshError(ErrorCode::mesh_too_large, Stage::delaunay, "more than 2^30 tetrahedra: ask for a coarser mesh"); }
 
 }  // namespace
 
@@ -28,9 +18,8 @@ TetId TetStore::allocate() {
         free_.pop_back();
         return t;
     }
-    constexpr std::size_t kMaxTets = (std::size_t{1} << 30) - 1;  // TetFace packs 4 t + f into 32 bits, all ones is "none"
-    if (tet_.size() >= kMaxTets) throw MeshError(ErrorCode::mesh_too_large, Stage::delaunay, "more than 2^30 tetrahedra: ask for a coarser mesh");
-    tet_.emplace_back();
+    if (tet_.size() >= kMaxTets) refuse_size();
+    tet_.push_back(Tet{});
     return TetId{tet_.size() - 1};
 }
 
@@ -39,9 +28,28 @@ void TetStore::release(TetId t) {
     free_.push_back(t);
 }
 
-void TetStore::reserve(std::size_t tets) {
-    tet_.reserve(tets);
-    advise_huge_pages(tet_.data(), tet_.capacity() * sizeof(Tet));
+std::vector<TetId> TetStore::take_slots(std::size_t count) {
+    std::vector<TetId> out;
+    out.reserve(count);
+    while (out.size() < count && !free_.empty()) {
+        out.push_back(free_.back());
+        free_.pop_back();
+    }
+    const std::size_t more = count - out.size(), first = tet_.size();
+    if (first + more > kMaxTets) refuse_size();
+    tet_.resize_as_is(first + more);
+    for (std::size_t i = more; i-- > 0;) {
+        out.push_back(TetId{first + i});  // the last one is taken first
+        tet_[first + i].corner[0] = VertexId{};
+    }
+    return out;
+}
+
+TetStore TetStore::view(std::vector<TetId> slots) {
+    TetStore out;
+    out.tet_ = tet_.view();
+    out.free_ = std::move(slots);
+    return out;
 }
 
 void TetStore::clear() {

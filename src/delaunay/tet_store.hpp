@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/ids.hpp"
+#include "core/shared_array.hpp"
 
 namespace wellmesh {
 
@@ -77,16 +78,27 @@ public:
     void set_across(TetFace a, TetFace b) { tet_[a.tet().index()].opposite[a.face()] = b; }
     /// Asks for the record ahead of its use; never faults.
     void prefetch(TetId t) const { __builtin_prefetch(tet_.data() + t.index()); }
-    void reserve(std::size_t tets);
+    void reserve(std::size_t tets) { tet_.reserve(tets); }
     void clear();
 
+    // --- views, for several workers at once (Triangulation::insert_in_zones)
+    /// The same tetrahedra, with `slots` free ones of its own: take_slots() made them. Valid until this store grows.
+    [[nodiscard]] TetStore view(std::vector<TetId> slots);
+    /// Slots that are on no free list any more, new ones at the end if there are not as many free. @throws as allocate()
+    [[nodiscard]] std::vector<TetId> take_slots(std::size_t count);
+    /// How many tetrahedra a view can still hold.
+    [[nodiscard]] std::size_t room() const { return free_.size(); }
+    /// Takes over what a view has left.
+    void take_back(const TetStore& view) { free_.insert(free_.end(), view.free_.begin(), view.free_.end()); }
+
 private:
+    static constexpr std::size_t kMaxTets = (std::size_t{1} << 30) - 1;  // TetFace packs 4 t + f into 32 bits, all ones is "none"
     struct alignas(32) Tet {
         Corners corner{};
         std::array<TetFace, 4> opposite{};
     };
     static_assert(sizeof(Tet) == 32);
-    std::vector<Tet> tet_;
+    SharedArray<Tet> tet_;
     std::vector<TetId> free_;
 };
 

@@ -18,6 +18,8 @@
 
 #include "core/checkpoint.hpp"
 #include "core/ids.hpp"
+#include "core/shared_array.hpp"
+#include "core/workers.hpp"
 #include "delaunay/tet_store.hpp"
 #include "predicates/predicates.hpp"
 #include "wellmesh/vec3.hpp"
@@ -65,8 +67,9 @@ public:
     /// Inserts all of `points` (duplicates are skipped) in a spatially sorted random order; vertex i is points[i].
     /// @return false if all points are coplanar; then nothing was triangulated. Duplicates: see `duplicate_count`.
     bool insert_all(std::span<const Vec3> points, const Checkpoint& checkpoint = {});
-    /// The same, but vertex i is points[order[i]]: with biased_spatial_order(points) neighbours in space are neighbours in memory.
-    bool insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order);
+    /// The same, but vertex i is points[order[i]]: with biased_spatial_order(points) neighbours in space are neighbours in memory. The ids of tetrahedra depend
+    /// on the number of workers; canonical_order() does not.
+    bool insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order, Workers& workers);
 
     // --- vertices
     VertexId add_point(const Vec3& p);  ///< stores coordinates, no more
@@ -75,7 +78,7 @@ public:
     [[nodiscard]] bool is_inserted(VertexId v) const { return vertices_[v.index()].tet.valid(); }
     /// Some tetrahedron of the star of v.
     [[nodiscard]] TetId tet_of(VertexId v) const { return vertices_[v.index()].tet; }
-    [[nodiscard]] std::size_t duplicate_count() const { return duplicates_; }
+    [[nodiscard]] std::size_t duplicate_count() const { return duplicates_.size(); }
 
     // --- queries
     [[nodiscard]] const TetStore& tets() const { return tets_; }
@@ -89,7 +92,9 @@ public:
     /// The same from a tetrahedron that is in conflict with p, for as long as `accept` says yes to the boundary's faces, one by one as they
     /// are found. @return false if it said no: the cavity is incomplete then. @pre p is no vertex's point
     template <class Accept>
-    bool grow_conflict_cavity(const Vec3& p, TetId seed, Cavity& cavity, const Accept& accept);
+    bool grow_conflict_cavity(const Vec3& p, TetId seed, Cavity& cavity, const Accept& accept) {
+        return grow_cavity<false>(p, seed, cavity, accept);
+    }
     /// After a cavity was found and before any change: is t in that cavity?
     [[nodiscard]] bool in_last_cavity(TetId t) const { return mark_[t.index()] == epoch_ + 1; }
     /// Tetrahedra of the star of v, ghosts included.
@@ -104,6 +109,11 @@ public:
     /// with v as corner 3, or as corner 2 of a ghost.
     void insert_vertex(VertexId v, const Cavity& cavity);
     [[nodiscard]] const std::vector<TetId>& new_tets() const { return new_tets_; }
+
+    // --- several workers at once (insert_in_zones.cpp)
+    /// Inserts stored points, all but duplicates, on all workers. The tetrahedra are those of insertion one by one, their ids are not.
+    /// @param order  vertices, neighbours in space near each other  @pre four vertices are inserted
+    void insert_on(Workers& workers, std::span<const std::uint32_t> order, const Checkpoint& checkpoint = {});
 
     /// Triangulates the hole that v would leave. @return false if v can't go (fewer than four affinely independent points would stay) or its star has more than
     /// `most_tets`.
@@ -134,8 +144,20 @@ private:
     void ensure_marks();
     void next_epoch();
     bool search_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity);
+    template <bool kZoned, class Accept>
+    bool grow_cavity(const Vec3& p, TetId seed, Cavity& cavity, const Accept& accept);
+    template <bool kZoned>
+    [[nodiscard]] TetId walk(const Vec3& p, TetId from) const;
     [[nodiscard]] bool ghost_in_conflict(TetId t, const Vec3& p) const;
-    bool insert_in_order(std::span<const std::uint32_t> order, const Checkpoint& checkpoint);
+    bool start_from(std::span<const std::uint32_t> order);
+    void prefer_first_duplicates(std::size_t from);
+    void insert_one_by_one(std::span<const std::uint32_t> order, const Checkpoint& checkpoint);
+
+    // of views: what may be touched
+    [[nodiscard]] bool is_mine(TetId t) const { return zone_of_tet_[t.index()] == zone_; }
+    Triangulation view_of_zone(std::uint8_t zone, std::uint8_t* zone_of_tet, std::vector<TetId> slots);
+    void insert_in_zone(std::span<const std::uint32_t> order, TetId seed, std::vector<std::uint32_t>& left);
+    std::vector<std::uint32_t> insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn);
     /// Numbers for the vertices of one cavity or hole: forgets all but infinity, which is 0; there is room for `most` more.
     void clear_local_numbers(std::size_t most);
     /// 1, 2, 3, ... in order of first mention.
@@ -155,11 +177,14 @@ private:
     TetStore tets_;
     PredicateFilter filter_;
     Vec3 low_{}, high_{};
-    std::vector<Vertex> vertices_;
-    std::size_t duplicates_ = 0;
+    SharedArray<Vertex> vertices_;
+    struct Duplicate {
+        VertexId vertex{}, inserted{};  // at the same place
+    };
+    std::vector<Duplicate> duplicates_;
 
     // scratch
-    std::vector<std::uint32_t> mark_;  // per tet: epoch_ visited and not in conflict, epoch_ + 1 in conflict
+    SharedArray<std::uint32_t> mark_;  // per tet: epoch_ visited and not in conflict, epoch_ + 1 in conflict
     std::uint32_t epoch_ = 0;
     std::vector<TetId> new_tets_;
     std::vector<TetId> star_stack_;
@@ -174,6 +199,8 @@ private:
     std::uint32_t local_count_ = 0;
     std::vector<TetFace> edge_table_;
     mutable TetId last_located_{};
+    std::uint8_t* zone_of_tet_ = nullptr;
+    std::uint8_t zone_ = 0;
 
     friend class HoleFiller;
 };

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "core/workers.hpp"
+#include "delaunay/canonical_order.hpp"
 #include "delaunay/spatial_order.hpp"
 #include "delaunay/triangulation.hpp"
 #include "predicates/exact_range.hpp"
@@ -11,7 +13,7 @@
 
 namespace wellmesh {
 
-DelaunayResult triangulate_points(std::span<const Vec3> points) {
+DelaunayResult triangulate_points(std::span<const Vec3> points, unsigned threads) {
     DelaunayResult result;
     if (points.size() < 4) throw MeshError(ErrorCode::bad_input, Stage::delaunay, fmt::format("{} points: at least four are needed", points.size()));
     Vec3 lo = points[0], hi = points[0];
@@ -27,19 +29,21 @@ DelaunayResult triangulate_points(std::span<const Vec3> points) {
         hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
     }
     Triangulation mesh(lo, hi);
-    const std::vector<std::uint32_t> order = biased_spatial_order(points);
-    if (!mesh.insert_all_in_order(points, order)) throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all points lie in one plane: there is no tetrahedron");
+    Workers workers(threads);
+    const std::vector<std::uint32_t> order = biased_spatial_order(points, workers);
+    if (!mesh.insert_all_in_order(points, order, workers)) throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all points lie in one plane: there is no tetrahedron");
     result.duplicates = mesh.duplicate_count();
     const TetStore& tets = mesh.tets();
     std::size_t count = 0;
-    for (std::size_t i = 0; i < tets.slots(); ++i) count += tets.is_finite(TetId{i});
-    result.mesh.tets.reserve(count);
-    for (std::size_t i = 0; i < tets.slots(); ++i) {
-        const TetId t{i};
-        if (!tets.is_finite(t)) continue;
-        const auto& c = tets.corners(t);
-        result.mesh.tets.push_back({order[c[0].index()], order[c[1].index()], order[c[2].index()], order[c[3].index()]});
-    }
+    visit_in_canonical_order<false>(
+        tets, mesh.vertex_count(), workers,
+        [&](std::size_t n) {
+            count = n;
+            result.mesh.tets.resize(n);
+        },
+        [&](std::size_t place, TetId, const TetStore::Corners& c) {
+            result.mesh.tets[place] = {order[c[0].index()], order[c[1].index()], order[c[2].index()], order[c[3].index()]};
+        });
     result.mesh.tet_regions.assign(count, 1);
     result.mesh.vertices.assign(points.begin(), points.end());
     return result;

@@ -58,10 +58,19 @@ public:
     /// The same for points that are stored as insphere_lanes.hpp wants them; faster.
     [[nodiscard]] Sign insphere_perturbed_padded(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) const {
         const double value = has_lanes_ ? insphere_value_in_lanes(a, b, c, d, e) : insphere_value(a, b, c, d, e);
+        return insphere_perturbed_of_value(value, {&a, &b, &c, &d}, e);
+    }
+    /// Rounded determinants of several spheres, stored likewise, at one point e; faster than one by one.
+    void insphere_values_padded(std::span<const SphereCorners> spheres, const Vec3& e, double* values) const {
+        if (has_lanes_) [[likely]]
+            return insphere_values_in_lanes(spheres, e, values);
+        for (std::size_t i = 0; i < spheres.size(); ++i) values[i] = insphere_value(*spheres[i][0], *spheres[i][1], *spheres[i][2], *spheres[i][3], e);
+    }
+    /// The sign that insphere_perturbed has, given the rounded determinant.
+    [[nodiscard]] Sign insphere_perturbed_of_value(double value, const SphereCorners& s, const Vec3& e) const {
         if (value > insphere_bound_) return Sign::positive;
-        if (value < -insphere_bound_) [[likely]]
-            return Sign::negative;
-        return insphere_perturbed_beyond_filter(a, b, c, d, e);
+        if (value < -insphere_bound_) return Sign::negative;
+        return insphere_perturbed_beyond_filter(*s[0], *s[1], *s[2], *s[3], e);
     }
     [[nodiscard]] Sign power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
                                   const WeightedPoint& e) const {

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bulk insertion on several threads. Space is split into zones; a tetrahedron belongs to a zone if all of its vertices do. Each zone has a worker with a view of
+// the triangulation, which may touch what belongs to its zone and nothing else: a point whose search meets anything else is left for later. What is left then
+// lies along the limits of the zones, and is shared out once more with limits of its own; the few that are left again go in one by one.
+//
+// The tetrahedra are a function of the points alone (triangulation.hpp), so who inserted what can't be seen in them; only their ids tell.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include "delaunay/triangulation.hpp"
+
+namespace wellmesh {
+namespace {
+
+constexpr std::uint8_t kNoZone = 255;
+constexpr std::size_t kMostZones = 128;
+/// Fewer points than these a zone are not worth the trouble: most would lie near its limits.
+constexpr std::size_t kLeastPointsAZone = 2000;
+/// Points grow by this factor from one share-out to the next: a zone's limits get thinner as its points get denser.
+constexpr std::size_t kGrowth = 8;
+
+/// Parts of space that have about as many points of a sample each. Limits of one turn are far from those of the next: what lies along them has its turn then.
+class ZoneTree {
+public:
+    ZoneTree(std::vector<Vec3> sample, std::size_t zones, unsigned turn) : zones_(zones), turn_(turn), nodes_(zones) {
+        first_axis_ = longest_axis(sample);
+        split(sample, 1, 0, zones);
+    }
+
+    [[nodiscard]] std::uint8_t zone_of(const Vec3& p) const {
+        std::size_t node = 1;
+        while (node < zones_) node = 2 * node + (coordinate(p, nodes_[node].axis) < nodes_[node].limit ? 0 : 1);
+        return static_cast<std::uint8_t>(node - zones_);
+    }
+
+private:
+    struct Node {
+        unsigned axis = 0;
+        double limit = 0;
+    };
+    static double coordinate(const Vec3& p, unsigned axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+    /// @param before, below  the zones that this node is for, [before, before + below)
+    void split(std::span<Vec3> points, std::size_t node, std::size_t before, std::size_t below) {
+        if (node >= zones_) return;
+        unsigned axis = (first_axis_ + turn_) % 3;
+        std::size_t part = points.size() / 2;
+        if (turn_ == 0) {
+            axis = longest_axis(points);
+        } else {
+            // Slabs, the first and the last one half as thick as the others.
+            const double left = static_cast<double>(before) - (before == 0 ? 0 : 0.5), right = static_cast<double>(before + below) - (before + below == zones_ ? 1 : 0.5);
+            const double middle = static_cast<double>(before + below / 2) - 0.5;
+            part = static_cast<std::size_t>((middle - left) / (right - left) * static_cast<double>(points.size()));
+        }
+        if (part < points.size()) {
+            std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(part), points.end(),
+                             [axis](const Vec3& p, const Vec3& q) { return coordinate(p, axis) < coordinate(q, axis); });
+            nodes_[node] = {axis, coordinate(points[part], axis)};
+        }
+        split(points.first(part), 2 * node, before, below / 2);
+        split(points.subspan(part), 2 * node + 1, before + below / 2, below / 2);
+    }
+    static unsigned longest_axis(std::span<const Vec3> points) {
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        Vec3 lo{kInfinity, kInfinity, kInfinity}, hi{-kInfinity, -kInfinity, -kInfinity};
+        for (const Vec3& p : points) {
+            lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+            hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+        }
+        const double x = hi.x - lo.x, y = hi.y - lo.y, z = hi.z - lo.z;
+        return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    }
+
+    std::size_t zones_;  // a power of two: inner nodes are 1 to zones - 1, as in a heap
+    unsigned turn_, first_axis_ = 0;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace
+
+Triangulation Triangulation::view_of_zone(std::uint8_t zone, std::uint8_t* zone_of_tet, std::vector<TetId> slots) {
+    Triangulation out;
+    out.tets_ = tets_.view(std::move(slots));
+    out.filter_ = filter_;
+    out.low_ = low_;
+    out.high_ = high_;
+    out.vertices_ = vertices_.view();
+    out.mark_ = mark_.view();
+    out.epoch_ = epoch_;
+    out.zone_of_tet_ = zone_of_tet;
+    out.zone_ = zone;
+    return out;
+}
+
+/// In a view. @param left  gets what must wait: its cavity is not all of this zone, or there is no room.
+void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId seed, std::vector<std::uint32_t>& left) {
+    if (!seed.valid()) {
+        left.assign(order.begin(), order.end());
+        return;
+    }
+    Cavity cavity;
+    last_located_ = seed;
+    for (const std::uint32_t i : order) {
+        const VertexId v{i};
+        const Vec3 p = point(v);
+        const TetId at = walk<true>(p, last_located_);
+        if (!at.valid() || (tets_.is_ghost(at) && !is_mine(tets_.across(at, 3).tet()))) {
+            left.push_back(i);
+            continue;
+        }
+        const TetStore::Corners& c = tets_.corners(at);
+        const auto same = std::find_if(c.begin(), c.end(), [&](VertexId w) { return w != kInfiniteVertex && point(w) == p; });
+        if (same != c.end()) {
+            duplicates_.push_back({v, *same});
+            continue;
+        }
+        if (!grow_cavity<true>(p, at, cavity, [](const BoundaryFace&) { return true; }) || tets_.room() + cavity.tets.size() < cavity.boundary.size()) {
+            left.push_back(i);
+            continue;
+        }
+        insert_vertex(v, cavity);
+    }
+}
+
+/// @return what is left
+std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn) {
+    const std::size_t zones = std::min({std::bit_floor(order.size() / kLeastPointsAZone), std::bit_ceil(std::size_t{workers.threads()}), kMostZones});
+    if (zones < 2) return {order.begin(), order.end()};
+    constexpr std::size_t kSampleAZone = 1024;
+    std::vector<Vec3> sample;
+    const std::size_t step = std::max<std::size_t>(1, order.size() / (kSampleAZone * zones));
+    for (std::size_t k = 0; k < order.size(); k += step) sample.push_back(point(VertexId{order[k]}));
+    const ZoneTree tree(std::move(sample), zones, turn);
+
+    struct Zone {
+        std::vector<std::uint32_t> order, left;
+        std::vector<TetId> slots;
+        TetId seed{};
+        std::uint32_t epoch = 0;
+        std::vector<Duplicate> duplicates;
+        TetStore store;
+    };
+    std::vector<Zone> team(zones);
+    for (const std::uint32_t i : order) team[tree.zone_of(point(VertexId{i}))].order.push_back(i);
+
+    for (Zone& z : team) {
+        // An insertion makes 6.77 tetrahedra more in random points.
+        z.slots = tets_.take_slots(7 * z.order.size() + 1000);
+    }
+    if (epoch_ > std::numeric_limits<std::uint32_t>::max() / 2) {
+        std::fill(mark_.begin(), mark_.end(), 0U);
+        epoch_ = 0;
+    }
+    mark_.resize(std::max(mark_.size(), tets_.slots()), 0);
+
+    SharedArray<std::uint8_t> zone_of_vertex, zone_of_tet;
+    zone_of_vertex.resize_as_is(vertices_.size());
+    zone_of_tet.resize_as_is(tets_.slots());
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    workers.for_ranges(vertices_.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) zone_of_vertex[i] = tree.zone_of(vertices_[i].point);
+    });
+    std::vector<std::array<TetId, kMostZones>> first((tets_.slots() + kGrain - 1) / kGrain);
+    workers.for_ranges(tets_.slots(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const TetStore::Corners& c = tets_.corners(TetId{i});
+            zone_of_tet[i] = kNoZone;
+            if (!c[0].valid()) continue;
+            const std::uint8_t zone = zone_of_vertex[c[0].index()];
+            if (zone_of_vertex[c[1].index()] != zone || zone_of_vertex[c[2].index()] != zone) continue;
+            if (c[3] != kInfiniteVertex && zone_of_vertex[c[3].index()] != zone) continue;
+            zone_of_tet[i] = zone;
+            if (TetId& t = first[piece][zone]; !t.valid()) t = TetId{i};
+        }
+    });
+    for (std::size_t z = 0; z < zones; ++z) {
+        for (const auto& piece : first)
+            if (!team[z].seed.valid()) team[z].seed = piece[z];
+    }
+
+    workers.for_each(zones, [&](std::size_t z) {
+        for (const TetId t : team[z].slots) zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
+        Triangulation view = view_of_zone(static_cast<std::uint8_t>(z), zone_of_tet.data(), std::move(team[z].slots));
+        view.insert_in_zone(team[z].order, team[z].seed, team[z].left);
+        team[z].epoch = view.epoch_;
+        team[z].duplicates = std::move(view.duplicates_);
+        team[z].store = std::move(view.tets_);
+    });
+
+    std::vector<std::uint32_t> left;
+    for (const Zone& z : team) {
+        left.insert(left.end(), z.left.begin(), z.left.end());
+        epoch_ = std::max(epoch_, z.epoch);
+        duplicates_.insert(duplicates_.end(), z.duplicates.begin(), z.duplicates.end());
+        tets_.take_back(z.store);
+    }
+    const auto inserted = std::find_if(order.begin(), order.end(), [&](std::uint32_t i) { return is_inserted(VertexId{i}); });
+    last_located_ = inserted != order.end() ? tet_of(VertexId{*inserted}) : TetId{};
+    return left;
+}
+
+/// Of points at one place the first in number is to be the vertex, whichever came first.
+void Triangulation::prefer_first_duplicates(std::size_t from) {
+    std::vector<TetId> star;
+    for (std::size_t i = from; i < duplicates_.size(); ++i) {
+        Duplicate& d = duplicates_[i];
+        for (std::size_t k = from; k < i; ++k)
+            if (duplicates_[k].vertex == d.inserted) d.inserted = duplicates_[k].inserted;  // it has had to go since
+        if (d.inserted < d.vertex) continue;
+        find_star(d.inserted, star);
+        for (const TetId t : star) {
+            TetStore::Corners c = tets_.corners(t);
+            std::replace(c.begin(), c.end(), d.inserted, d.vertex);
+            tets_.set_corners(t, c);
+        }
+        vertices_[d.vertex.index()].tet = std::exchange(vertices_[d.inserted.index()].tet, TetId{});
+        std::swap(d.vertex, d.inserted);
+    }
+}
+
+void Triangulation::insert_on(Workers& workers, std::span<const std::uint32_t> order, const Checkpoint& checkpoint) {
+    // Shares as the rounds of a biased order [Amenta03], each kGrowth times the one before, so that a zone's limits are thin beside what goes into it.
+    std::size_t share = order.size();
+    while (workers.threads() > 1 && share > 2 * kLeastPointsAZone * workers.threads()) share /= kGrowth;
+    if (workers.threads() == 1) share = order.size();
+    const std::size_t known = duplicates_.size();
+    insert_one_by_one(order.first(share), checkpoint);
+    for (std::size_t done = share; done < order.size();) {
+        pass(checkpoint);
+        const std::size_t n = std::min(done * kGrowth + kGrowth, order.size()) - done;
+        const auto part = order.subspan(done, n);
+        std::vector<std::uint32_t> left(part.begin(), part.end());
+        constexpr unsigned kTurns = 4;
+        for (unsigned turn = 0; turn < kTurns && !left.empty(); ++turn) left = insert_in_zones(workers, left, turn);
+        insert_one_by_one(left, checkpoint);
+        done += n;
+    }
+    prefer_first_duplicates(known);
+}
+
+}  // namespace wellmesh
