@@ -95,6 +95,7 @@ private:
         ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_, guard_.checkpoint()); });
         require_room(options_.limits, valid.vertices.size(), guard_.stage());
         result_.statistics.coplanar_tolerance = valid.coplanar_tolerance;
+        result_.statistics.cells = valid.diagnosis.cells;
         result_.statistics.notes.clear();
         note_input(result_, options_, plc_, valid);
         return valid;
