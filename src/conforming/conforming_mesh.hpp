@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -144,6 +145,17 @@ public:
 
     /// Inserts cavity.point and notes its insertion length. Labels and cells follow; constraints that the point destroys without lying on them are noted as broken.
     VertexId insert(const Cavity& cavity, const Placement& where, const VertexInfo& info);
+    /// Adds vertices inside cells, all that encroach upon nothing, on all workers. All get numbers, in their order;
+    /// those that did not go in are not inserted, insert_known() may still do it. Ids of tetrahedra depend on the number of workers. Insertion lengths are not noted.
+    /// @param points  in biased_spatial_order(), none of them a vertex's  @param is_welcome  may there be a vertex in this cell? From any thread.
+    /// @param may_go_on  asked now and then, from any thread
+    /// @return the vertices that are not in
+    std::vector<VertexId> insert_inside(Workers& workers, std::span<const Vec3> points, InsertionReason reason,
+                                        const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on);
+    /// Inserts such a vertex. @param where  in a cell
+    void insert_known(VertexId v, const Cavity& cavity, const Placement& where);
+    /// Ids of tetrahedra that depend on the mesh alone; all ids from before are void. @pre nothing is broken or forgotten
+    void renumber_tets(Workers& workers);
     /// Puts a removed vertex back, or elsewhere on its carrier: like insert, keeping id and info.
     void reinsert(VertexId v, const Cavity& cavity, const Placement& where);
     /// Takes v out. Cells and labels of the filling are found by flooding from the boundary of the hole. @return false, with nothing
@@ -196,7 +208,8 @@ private:
         FacetId facet{};
     };
 
-    void capture(const Cavity& cavity);
+    void capture(const Cavity& cavity, std::vector<CapturedFace>& captured) const;
+    [[nodiscard]] bool is_encroached_at(TetId t, const Vec3& p) const;
     void collect_interior(const Cavity& cavity, const Placement& where);
     void replace_subfaces(const Cavity& cavity, const Placement& where, FacetId facet);
     void commit(VertexId v, const Cavity& cavity, const Placement& where);
@@ -208,6 +221,7 @@ private:
     TetLabels& labels_for_writing(TetId t);
     void drop_labels(TetId t);
     void fit_arrays();
+    class InsideObserver;
     [[nodiscard]] bool is_segment_edge(VertexId a, VertexId b) const;
 
     const ValidPlc* plc_;

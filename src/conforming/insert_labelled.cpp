@@ -22,13 +22,12 @@ double depth_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, 
 
 }  // namespace
 
-void ConformingMesh::capture(const Cavity& cavity) {
+void ConformingMesh::capture(const Cavity& cavity, std::vector<CapturedFace>& captured) const {
     const TetStore& tets = tri_.tets();
-    captured_.resize(cavity.boundary.size());
-    captured_segments_.clear();
+    captured.resize(cavity.boundary.size());
     for (std::size_t i = 0; i < cavity.boundary.size(); ++i) {
         const TetFace inside = cavity.boundary[i].inside;
-        CapturedFace& c = captured_[i];
+        CapturedFace& c = captured[i];
         c = CapturedFace{};
         c.corners = tets.face_corners(inside);
         c.cell = cell_[inside.tet().index()];
@@ -36,10 +35,7 @@ void ConformingMesh::capture(const Cavity& cavity) {
         const TetLabels& l = labels(inside.tet());
         c.facet = l.facets[inside.face()];
         const auto& slot = kFaceCorners[inside.face()];
-        for (std::size_t k = 0; k < 3; ++k) {
-            c.segments[k] = l.segments[kEdgeOf[slot[(k + 1) % 3]][slot[(k + 2) % 3]]];
-            if (c.segments[k].valid()) captured_segments_.push_back({c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], c.segments[k]});
-        }
+        for (std::size_t k = 0; k < 3; ++k) c.segments[k] = l.segments[kEdgeOf[slot[(k + 1) % 3]][slot[(k + 2) % 3]]];
     }
 }
 
@@ -175,7 +171,11 @@ bool ConformingMesh::note_destroyed(const Placement& where) {
 
 /// Reads everything that the insertion needs to know about the cavity, and finds how the surface will run.
 void ConformingMesh::plan(const Cavity& cavity, const Placement& where) {
-    capture(cavity);
+    capture(cavity, captured_);
+    captured_segments_.clear();
+    for (const CapturedFace& c : captured_)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (c.segments[k].valid()) captured_segments_.push_back({c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], c.segments[k]});
     loop_.clear();
     interior_.clear();
     interior_segments_.clear();

@@ -21,6 +21,7 @@ constexpr std::size_t kMostZones = 128;
 constexpr std::size_t kLeastPointsAZone = 2000;
 /// Points grow by this factor from one share-out to the next: a zone's limits get thinner as its points get denser.
 constexpr std::size_t kGrowth = 8;
+constexpr std::size_t kBetweenQuestions = 512;  // insertions, of microseconds mostly
 
 /// Parts of space that have about as many points of a sample each. Limits of one turn are far from those of the next: what lies along them has its turn then.
 class ZoneTree {
@@ -96,15 +97,20 @@ Triangulation Triangulation::view_of_zone(std::uint8_t zone, std::uint8_t* zone_
     return out;
 }
 
-/// In a view. @param left  gets what must wait: its cavity is not all of this zone, or there is no room.
-void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId seed, std::vector<std::uint32_t>& left) {
+/// In a view. @param left  gets what must wait: its cavity is not all of this zone, or it is refused, or there is no room.
+void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId seed, BulkObserver* observer, std::vector<std::uint32_t>& left) {
     if (!seed.valid()) {
         left.assign(order.begin(), order.end());
         return;
     }
     Cavity cavity;
     last_located_ = seed;
-    for (const std::uint32_t i : order) {
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const std::uint32_t i = order[k];
+        if (observer && k % kBetweenQuestions == 0 && !observer->may_go_on()) {
+            left.insert(left.end(), order.begin() + static_cast<std::ptrdiff_t>(k), order.end());
+            return;
+        }
         const VertexId v{i};
         const Vec3 p = point(v);
         const TetId at = walk<true>(p, last_located_);
@@ -118,16 +124,62 @@ void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId s
             duplicates_.push_back({v, *same});
             continue;
         }
+        if (observer && !observer->welcomes(p, at)) {
+            left.push_back(i);
+            continue;
+        }
         if (!grow_cavity<true>(p, at, cavity, [](const BoundaryFace&) { return true; }) || tets_.room() + cavity.tets.size() < cavity.boundary.size()) {
             left.push_back(i);
             continue;
         }
+        if (observer && !observer->prepare(cavity)) {
+            left.push_back(i);
+            continue;
+        }
         insert_vertex(v, cavity);
+        if (observer) observer->made(v, new_tets_);
     }
 }
 
+/// The same with the whole triangulation for a zone.
+std::vector<std::uint32_t> Triangulation::insert_one_by_one(std::span<const std::uint32_t> order, BulkObserver* observer) {
+    std::vector<std::uint32_t> left;
+    Cavity cavity;
+    TetId near = last_located_;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (observer && k % kBetweenQuestions == 0 && !observer->may_go_on()) {
+            left.insert(left.end(), order.begin() + static_cast<std::ptrdiff_t>(k), order.end());
+            break;
+        }
+        const VertexId v{order[k]};
+        if (is_inserted(v)) continue;
+        if (observer) {
+            near = locate(point(v), near);
+            if (!observer->welcomes(point(v), near)) {
+                left.push_back(order[k]);
+                continue;
+            }
+        }
+        if (!find_conflict_cavity(point(v), near, cavity)) {
+            duplicates_.push_back({v, cavity.duplicate});
+            continue;
+        }
+        if (observer && !observer->prepare(cavity)) {
+            left.push_back(order[k]);
+            continue;
+        }
+        insert_vertex(v, cavity);
+        if (observer) {
+            observer->make_room(tets_.slots());
+            observer->made(v, new_tets_);
+        }
+        near = last_located_;
+    }
+    return left;
+}
+
 /// @return what is left
-std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn) {
+std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn, BulkObserver* observer) {
     const std::size_t zones = std::min({std::bit_floor(order.size() / kLeastPointsAZone), std::bit_ceil(std::size_t{workers.threads()}), kMostZones});
     if (zones < 2) return {order.begin(), order.end()};
     constexpr std::size_t kSampleAZone = 1024;
@@ -156,6 +208,10 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
         epoch_ = 0;
     }
     mark_.resize(std::max(mark_.size(), tets_.slots()), 0);
+    if (observer) {
+        observer->make_room(tets_.slots());
+        observer->split(zones);
+    }
 
     SharedArray<std::uint8_t> zone_of_vertex, zone_of_tet;
     zone_of_vertex.resize_as_is(vertices_.size());
@@ -185,11 +241,13 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
     workers.for_each(zones, [&](std::size_t z) {
         for (const TetId t : team[z].slots) zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
         Triangulation view = view_of_zone(static_cast<std::uint8_t>(z), zone_of_tet.data(), std::move(team[z].slots));
-        view.insert_in_zone(team[z].order, team[z].seed, team[z].left);
+        view.insert_in_zone(team[z].order, team[z].seed, observer ? &observer->for_zone(z) : nullptr, team[z].left);
         team[z].epoch = view.epoch_;
         team[z].duplicates = std::move(view.duplicates_);
         team[z].store = std::move(view.tets_);
     });
+
+    if (observer) observer->join();
 
     std::vector<std::uint32_t> left;
     for (const Zone& z : team) {
@@ -222,24 +280,25 @@ void Triangulation::prefer_first_duplicates(std::size_t from) {
     }
 }
 
-void Triangulation::insert_on(Workers& workers, std::span<const std::uint32_t> order, const Checkpoint& checkpoint) {
+std::vector<std::uint32_t> Triangulation::insert_on(Workers& workers, std::span<const std::uint32_t> order, BulkObserver* observer) {
+    const std::size_t known = duplicates_.size();
     // Shares as the rounds of a biased order [Amenta03], each kGrowth times the one before, so that a zone's limits are thin beside what goes into it.
     std::size_t share = order.size();
-    while (workers.threads() > 1 && share > 2 * kLeastPointsAZone * workers.threads()) share /= kGrowth;
-    if (workers.threads() == 1) share = order.size();
-    const std::size_t known = duplicates_.size();
-    insert_one_by_one(order.first(share), checkpoint);
+    if (workers.threads() > 1)
+        while (share > 2 * kLeastPointsAZone * workers.threads()) share /= kGrowth;
+    std::vector<std::uint32_t> refused = insert_one_by_one(order.first(share), observer);
     for (std::size_t done = share; done < order.size();) {
-        pass(checkpoint);
-        const std::size_t n = std::min(done * kGrowth + kGrowth, order.size()) - done;
-        const auto part = order.subspan(done, n);
+        const auto part = order.subspan(done, std::min(done * kGrowth + kGrowth, order.size()) - done);
+        done += part.size();
         std::vector<std::uint32_t> left(part.begin(), part.end());
         constexpr unsigned kTurns = 4;
-        for (unsigned turn = 0; turn < kTurns && !left.empty(); ++turn) left = insert_in_zones(workers, left, turn);
-        insert_one_by_one(left, checkpoint);
-        done += n;
+        for (unsigned turn = 0; turn < kTurns && !left.empty(); ++turn) left = insert_in_zones(workers, left, turn, observer);
+        left = insert_one_by_one(left, observer);
+        refused.insert(refused.end(), left.begin(), left.end());
     }
     prefer_first_duplicates(known);
+    std::sort(refused.begin(), refused.end());
+    return refused;
 }
 
 }  // namespace wellmesh

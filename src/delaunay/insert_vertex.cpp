@@ -151,13 +151,38 @@ void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
     last_located_ = new_tets_[0];
 }
 
+namespace {
+
+/// Refuses nothing, but passes a checkpoint, which may throw.
+class CheckpointPasser : public BulkObserver {
+public:
+    explicit CheckpointPasser(const Checkpoint& checkpoint) : checkpoint_(checkpoint) {}
+    void make_room(std::size_t) override {}
+    void split(std::size_t) override {}
+    BulkObserver& for_zone(std::size_t) override { return *this; }
+    void join() override {}
+    bool welcomes(const Vec3&, TetId) override { return true; }
+    bool prepare(const Cavity&) override { return true; }
+    void made(VertexId, const std::vector<TetId>&) override {}
+    bool may_go_on() override {
+        pass(checkpoint_);
+        return true;
+    }
+
+private:
+    const Checkpoint& checkpoint_;
+};
+
+}  // namespace
+
 bool Triangulation::insert_all(std::span<const Vec3> points, const Checkpoint& checkpoint) {
     vertices_.clear();
     vertices_.reserve(points.size());
     for (const Vec3& p : points) vertices_.push_back({p});
     const std::vector<std::uint32_t> order = biased_spatial_order(points);
     if (!start_from(order)) return false;
-    insert_one_by_one(order, checkpoint);
+    CheckpointPasser passer(checkpoint);
+    (void)insert_one_by_one(order, &passer);
     return true;
 }
 
@@ -168,7 +193,7 @@ bool Triangulation::insert_all_in_order(std::span<const Vec3> points, std::span<
     std::vector<std::uint32_t> identity(order.size());
     std::iota(identity.begin(), identity.end(), 0U);
     if (!start_from(identity)) return false;
-    insert_on(workers, identity);
+    (void)insert_on(workers, identity);
     return true;
 }
 
@@ -189,24 +214,6 @@ bool Triangulation::start_from(std::span<const std::uint32_t> order) {
     if (found < 4) return false;
     start(first[0], first[1], first[2], first[3]);
     return true;
-}
-
-void Triangulation::insert_one_by_one(std::span<const std::uint32_t> order, const Checkpoint& checkpoint) {
-    Cavity cavity;
-    TetId near = last_located_;
-    constexpr std::size_t kBetweenCheckpoints = 512;  // insertions, of microseconds mostly
-    std::size_t inserted = 0;
-    for (const std::uint32_t i : order) {
-        const VertexId v{i};
-        if (is_inserted(v)) continue;
-        if (++inserted % kBetweenCheckpoints == 0) pass(checkpoint);
-        if (!find_conflict_cavity(point(v), near, cavity)) {
-            duplicates_.push_back({v, cavity.duplicate});
-            continue;
-        }
-        insert_vertex(v, cavity);
-        near = last_located_;
-    }
 }
 
 }  // namespace wellmesh

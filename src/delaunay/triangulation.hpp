@@ -51,6 +51,27 @@ struct Hole {
     static constexpr std::uint32_t kBoundaryBit = 0x80000000U;
 };
 
+/// Takes part in bulk insertion.
+class BulkObserver {
+public:
+    virtual ~BulkObserver() = default;
+    /// There are this many slots for tetrahedra from now on.
+    virtual void make_room(std::size_t slots) = 0;
+    /// From now until join() the observers for_zone(0), ... for_zone(zones - 1) are asked instead, from several threads at once, each about vertices and
+    /// tetrahedra that no other one touches meanwhile.
+    virtual void split(std::size_t zones) = 0;
+    virtual BulkObserver& for_zone(std::size_t zone) = 0;
+    virtual void join() = 0;
+    /// Is a vertex at p welcome, which this tetrahedron holds, or beyond this ghost's face? Asked before its cavity is known.
+    virtual bool welcomes(const Vec3& p, TetId holder) = 0;
+    /// Called just before the point of the cavity becomes a vertex; false: it must not.
+    virtual bool prepare(const Cavity& cavity) = 0;
+    /// ... and just after. Tetrahedron i stands on face i of the cavity's boundary.
+    virtual void made(VertexId v, const std::vector<TetId>& tets) = 0;
+    /// Asked now and then; once it has said no to one thread it says so to all.
+    virtual bool may_go_on() = 0;
+};
+
 class Triangulation {
 public:
     Triangulation() = default;
@@ -111,9 +132,13 @@ public:
     [[nodiscard]] const std::vector<TetId>& new_tets() const { return new_tets_; }
 
     // --- several workers at once (insert_in_zones.cpp)
-    /// Inserts stored points, all but duplicates, on all workers. The tetrahedra are those of insertion one by one, their ids are not.
-    /// @param order  vertices, neighbours in space near each other  @pre four vertices are inserted
-    void insert_on(Workers& workers, std::span<const std::uint32_t> order, const Checkpoint& checkpoint = {});
+    /// Inserts stored points, all but duplicates and those that `observer` refuses, on all workers. The tetrahedra are those of insertion one by one, their
+    /// ids are not. @param order  vertices, neighbours in space near each other
+    /// @return what was refused, or not begun when the observer said stop  @pre four vertices are inserted
+    std::vector<std::uint32_t> insert_on(Workers& workers, std::span<const std::uint32_t> order, BulkObserver* observer = nullptr);
+    /// Numbers the tetrahedra in canonical order, without gaps, their corners in canonical order, too. Ids from before are void.
+    /// @return for each new id the old one
+    std::vector<TetId> renumber(Workers& workers);
 
     /// Triangulates the hole that v would leave. @return false if v can't go (fewer than four affinely independent points would stay) or its star has more than
     /// `most_tets`.
@@ -151,13 +176,14 @@ private:
     [[nodiscard]] bool ghost_in_conflict(TetId t, const Vec3& p) const;
     bool start_from(std::span<const std::uint32_t> order);
     void prefer_first_duplicates(std::size_t from);
-    void insert_one_by_one(std::span<const std::uint32_t> order, const Checkpoint& checkpoint);
+    void find_homes(Workers& workers);
+    std::vector<std::uint32_t> insert_one_by_one(std::span<const std::uint32_t> order, BulkObserver* observer);
 
     // of views: what may be touched
     [[nodiscard]] bool is_mine(TetId t) const { return zone_of_tet_[t.index()] == zone_; }
     Triangulation view_of_zone(std::uint8_t zone, std::uint8_t* zone_of_tet, std::vector<TetId> slots);
-    void insert_in_zone(std::span<const std::uint32_t> order, TetId seed, std::vector<std::uint32_t>& left);
-    std::vector<std::uint32_t> insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn);
+    void insert_in_zone(std::span<const std::uint32_t> order, TetId seed, BulkObserver* observer, std::vector<std::uint32_t>& left);
+    std::vector<std::uint32_t> insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn, BulkObserver* observer);
     /// Numbers for the vertices of one cavity or hole: forgets all but infinity, which is 0; there is room for `most` more.
     void clear_local_numbers(std::size_t most);
     /// 1, 2, 3, ... in order of first mention.

@@ -11,6 +11,7 @@
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
+#include "core/workers.hpp"
 #include "exudation/exude.hpp"
 #include "pipeline/certify_result.hpp"
 #include "pipeline/extract_mesh.hpp"
@@ -43,7 +44,7 @@ class Generator {
 public:
     /// @param given  the mesh to start from; null: from the input's vertices alone.
     Generator(const Plc& plc, const TetMesh* given, const MeshOptions& options, const RunControl& control)
-        : plc_(plc), given_(given), options_(with_names_resolved(options, plc)), control_(control), guard_(options.limits, control) {}
+        : plc_(plc), given_(given), options_(with_names_resolved(options, plc)), control_(control), guard_(options.limits, control), workers_(options.threads) {}
 
     MeshResult run_within_memory() {
         try {
@@ -163,7 +164,7 @@ private:
         timed(Stage::refine, [&] {
             // The published ways have no seeds: they begin with what Delaunay refinement makes.
             if (!given_ && options_.slivers == SliverStrategy::best && options_.seeding == Seeding::automatic && !certified)
-                LatticeSeeder(mesh, boundary, guard_, refiner.sizes()).seed();
+                LatticeSeeder(mesh, boundary, guard_, refiner.sizes(), workers_).seed();
             const std::size_t before = mesh.vertex_count();
             verdict = refiner.refine();
             if (given_) result_.statistics.given->added_for_refinement = mesh.vertex_count() - before;
@@ -208,6 +209,7 @@ private:
     MeshOptions options_;
     const RunControl& control_;
     RunGuard guard_;
+    Workers workers_;
     MeshResult result_;
     std::vector<AskedAchieved> size_rows_;
     std::uint64_t vertices_ = 0, tets_ = 0;

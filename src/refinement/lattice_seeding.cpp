@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 #include "conforming/place_point.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/spatial_order.hpp"
+#include "validation/box_tree.hpp"
 
 namespace wellmesh {
 namespace {
@@ -50,8 +53,8 @@ double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
 
 }  // namespace
 
-LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes)
-    : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(sizes), radius_(mesh.plc().cells.size(), kInfinity), spacing_(radius_.size(), kInfinity), is_thin_(radius_.size(), 0) {
+LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes, Workers& workers)
+    : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(sizes), workers_(workers), radius_(mesh.plc().cells.size(), kInfinity), spacing_(radius_.size(), kInfinity), is_thin_(radius_.size(), 0) {
     std::vector<double> surface(radius_.size(), 0);
     for (const ValidFacet& f : mesh.plc().facets) {
         double area = 0;
@@ -249,29 +252,94 @@ std::uint64_t LatticeSeeder::seed() {
     // From coarse to fine: vertices on an empty domain's boundary would all be neighbours of each other.
     constexpr double kCoarsest = 8;
     if (!split_boundary(kCoarsest)) return 0;
-    const std::vector<LatticePoint> lattice = find_lattice(base);
+    std::vector<Seed> seeds = seeds_of(find_lattice(base));
+    for (double coarseness = kCoarsest; coarseness >= 1; coarseness /= 2) {
+        if (!split_boundary(coarseness)) break;
+        // As many as the coarse mesh would have.
+        const auto share = static_cast<std::size_t>(static_cast<double>(seeds.size()) / (coarseness * coarseness * coarseness));
+        const bool goes_on = insert_seeds({seeds.data(), share});
+        mesh_.renumber_tets(workers_);  // what comes next goes by ids
+        if (!goes_on) break;
+    }
+    return inserted_;
+}
+
+std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<LatticePoint>& lattice) {
     std::vector<Vec3> points;
     points.reserve(lattice.size());
     for (const LatticePoint& p : lattice) points.push_back(p.point);
-    const std::vector<std::uint32_t> order = biased_spatial_order(points);
-    std::vector<char> waits(lattice.size(), 1);
-    std::uint64_t inserted = 0;
-    for (double coarseness = kCoarsest; coarseness >= 1; coarseness /= 2) {
-        if (!split_boundary(coarseness)) return inserted;
-        // As many as the coarse mesh would have.
-        const auto share = static_cast<std::size_t>(static_cast<double>(order.size()) / (coarseness * coarseness * coarseness));
-        TetId near{};
-        for (std::size_t k = 0; k < share; ++k) {
-            const std::uint32_t i = order[k];
-            if (waits[i] == 0) continue;
-            if (!may_go_on(order.size() - inserted)) return inserted;
-            const std::uint64_t key = mix64(boundary_.seed(), i);
-            const Outcome outcome = insert(flush_to_exact_range(points[i] + (kLatticeJitter * lattice[i].spacing) * picking_point(3, key, 1)), near);
-            if (outcome != Outcome::encroaches) waits[i] = 0;  // finer boundaries are encroached by fewer
-            inserted += outcome == Outcome::inserted;
+    const std::vector<std::uint32_t> order = biased_spatial_order(points, workers_);
+    std::vector<Seed> seeds(order.size());
+    workers_.for_ranges(order.size(), 1 << 14, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const LatticePoint& p = lattice[order[k]];
+            seeds[k] = {flush_to_exact_range(p.point + (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1)), p.spacing};
         }
+    });
+    return seeds;
+}
+
+/// Seeds deep inside first, on all workers: whether they are clear of the boundary does not depend on what else is there. Then the others, in their order.
+bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
+    // Limits on vertices, and balls about acute vertices that give way, depend on the order.
+    const bool in_bulk = !boundary_.acute().any() && !guard_.has_too_many(mesh_.vertex_count() + seeds.size());
+    if (in_bulk && !insert_deep(seeds)) return false;
+    TetId near{};
+    for (Seed& s : seeds) {
+        if (!s.waits) continue;
+        if (!may_go_on(seeds.size())) return false;
+        const Outcome outcome = insert(s.point, near);
+        s.waits = outcome == Outcome::encroaches;  // finer boundaries are encroached by fewer
+        inserted_ += outcome == Outcome::inserted;
     }
-    return inserted;
+    return true;
+}
+
+bool LatticeSeeder::insert_deep(std::span<Seed> seeds) {
+    std::vector<Box> boxes;
+    for (const Face& f : list_faces()) boxes.push_back({f.box[0], f.box[1]});
+    const BoxTree tree(boxes);
+    double largest = 0;
+    for (const double r : radius_)
+        if (r < kInfinity) largest = std::max(largest, r);
+    std::vector<char> is_deep(seeds.size(), 0);
+    workers_.for_ranges(seeds.size(), 1 << 10, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t k = begin; k < end; ++k) {
+            if (!seeds[k].waits) continue;
+            // Leaves are at least half as large as they may be.
+            const double radius = sizes_.varies() || largest == 0 ? 2 * seeds[k].spacing * kLatticeCircumradius / kLatticeScale : largest;
+            const double reach = 1.01 * kClearance * radius;
+            bool near = false;
+            tree.query([&](const Box& b) { return !near && b.distance_to(seeds[k].point) <= reach; }, [&](std::uint32_t) { near = true; });
+            is_deep[k] = !near;
+        }
+    });
+    std::vector<Vec3> points;
+    std::vector<std::size_t> numbers;
+    for (std::size_t k = 0; k < seeds.size(); ++k)
+        if (is_deep[k] != 0) {
+            points.push_back(seeds[k].point);
+            numbers.push_back(k);
+        }
+    const auto caller = std::this_thread::get_id();
+    std::atomic<bool> stopped{false};
+    const auto goes_on = [&] {
+        if (std::this_thread::get_id() == caller && !may_go_on(points.size())) stopped = true;
+        return !stopped.load();
+    };
+    const auto is_welcome = [this](const Vec3& p, CellId c) { return radius_at(p, c) < kInfinity; };
+    const std::size_t first = mesh_.vertex_slots(), before = mesh_.vertex_count();
+    const std::vector<VertexId> left = mesh_.insert_inside(workers_, points, InsertionReason::lattice, is_welcome, goes_on);
+    inserted_ += mesh_.vertex_count() - before;
+    for (const std::size_t k : numbers) seeds[k].waits = false;
+    TetId near{};
+    for (const VertexId v : left) {
+        if (stopped || !may_go_on(points.size())) return false;
+        const Outcome outcome = insert(mesh_.point(v), near, v);
+        seeds[numbers[v.index() - first]].waits = outcome == Outcome::encroaches;
+        inserted_ += outcome == Outcome::inserted;
+    }
+    return !stopped;
 }
 
 std::vector<LatticePoint> LatticeSeeder::find_lattice(double base) {
@@ -290,7 +358,8 @@ std::vector<LatticePoint> LatticeSeeder::find_lattice(double base) {
     return tree.lattice();
 }
 
-LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near) {
+/// @param known  a vertex that is stored at p, to be inserted; invalid: a new one
+LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near, VertexId known) {
     Triangulation& tri = mesh_.triangulation();
     near = tri.locate(p, near);
     const CellId cell = mesh_.cell(near);
@@ -303,8 +372,9 @@ LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near) {
     boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
     if (!encroached_segments_.empty() || !encroached_faces_.empty()) return Outcome::encroaches;
     if (!boundary_.makes_room(cavity_, InsertionReason::lattice)) return Outcome::refused;
-    const VertexId v = mesh_.insert(cavity_, where, {.reason = InsertionReason::lattice});
-    near = tri.tet_of(v);
+    if (known.valid()) mesh_.insert_known(known, cavity_, where);
+    else known = mesh_.insert(cavity_, where, {.reason = InsertionReason::lattice});
+    near = tri.tet_of(known);
     return Outcome::inserted;
 }
 

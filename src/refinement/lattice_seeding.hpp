@@ -5,11 +5,13 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
+#include "core/workers.hpp"
 #include "refinement/graded_octree.hpp"
 #include "sizing/size_field.hpp"
 
@@ -19,11 +21,11 @@ class LatticeSeeder {
 public:
     /// @param sizes  must outlive this; where nothing is asked it stays empty, and so it does where a field varies and no lattice of the octree's would be
     ///               about as large as it may.
-    LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes);
+    LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes, Workers& workers);
 
     /// Splits subsegments and subfaces that no tetrahedron within its bound could have, then inserts the lattice's vertices, except those
     /// that lie close to the boundary or encroach upon it. The mesh conforms afterwards. @throws as BoundaryRefiner::conform does.
-    /// Ends early, the mesh conforming, when the guard says so. @return vertices inserted from the lattice
+    /// Ends early, the mesh conforming, when the guard says so. The ids of tetrahedra are new afterwards. @return vertices inserted from the lattice
     std::uint64_t seed();
 
 private:
@@ -38,7 +40,16 @@ private:
     bool split_boundary(double coarseness);
     [[nodiscard]] bool may_go_on(std::uint64_t waiting) { return guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting) == RunGuard::Verdict::go_on; }
     [[nodiscard]] std::vector<LatticePoint> find_lattice(double base);
-    Outcome insert(const Vec3& p, TetId& near);
+    /// A point of the lattice that waits, moved by its jitter.
+    struct Seed {
+        Vec3 point{};
+        double spacing = 0;
+        bool waits = true;
+    };
+    [[nodiscard]] std::vector<Seed> seeds_of(const std::vector<LatticePoint>& lattice);
+    bool insert_seeds(std::span<Seed> seeds);
+    bool insert_deep(std::span<Seed> seeds);
+    Outcome insert(const Vec3& p, TetId& near, VertexId known = {});
     [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double spacing_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double radius_bound(TetId t, const Vec3& p) const;
@@ -51,6 +62,8 @@ private:
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
     const SizeField& sizes_;
+    Workers& workers_;
+    std::uint64_t inserted_ = 0;
     std::vector<double> radius_;   // by cell: circumradius bound that is the same all over it; infinite: none
     std::vector<double> spacing_;  // by cell: lattice constant of that
     std::vector<char> is_thin_;    // by cell: nothing is done in it

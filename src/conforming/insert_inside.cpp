@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bulk insertion inside cells, and numbering afterwards.
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "conforming/conforming_mesh.hpp"
+
+namespace wellmesh {
+
+/// Points that encroach nothing destroy no subface or subsegment: labels on the cavity's boundary are inherited, and that is all.
+class ConformingMesh::InsideObserver : public BulkObserver {
+public:
+    InsideObserver(ConformingMesh& mesh, const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on)
+        : mesh_(mesh), is_welcome_(is_welcome), may_go_on_(may_go_on) {}
+
+    void make_room(std::size_t) override { mesh_.fit_arrays(); }
+    /// Each zone has records of its own, as many more as there are now.
+    void split(std::size_t zones) override {
+        const std::size_t share = mesh_.records_.size() / zones + kSpareRecords;
+        std::vector<std::uint32_t>& free = mesh_.free_records_;
+        parts_.clear();
+        for (std::size_t z = 0; z < zones; ++z) parts_.emplace_back(mesh_, is_welcome_, may_go_on_);
+        for (InsideObserver& part : parts_) {
+            part.is_part_ = true;
+            for (std::size_t k = 0; k < share; ++k) {
+                if (free.empty()) {
+                    free.push_back(static_cast<std::uint32_t>(mesh_.records_.size()));
+                    mesh_.records_.emplace_back();
+                }
+                part.records_.push_back(free.back());
+                free.pop_back();
+            }
+        }
+    }
+    BulkObserver& for_zone(std::size_t zone) override { return parts_[zone]; }
+    void join() override {
+        for (const InsideObserver& part : parts_) mesh_.free_records_.insert(mesh_.free_records_.end(), part.records_.begin(), part.records_.end());
+        parts_.clear();
+    }
+
+    bool welcomes(const Vec3& p, TetId holder) override {
+        return !mesh_.tets().is_ghost(holder) && mesh_.in_domain(holder) && is_welcome_(p, mesh_.cell(holder));
+    }
+    bool prepare(const Cavity& cavity) override {
+        std::size_t dropped = 0;
+        for (const TetId t : cavity.tets) {
+            if (!mesh_.has_labels(t)) continue;
+            ++dropped;
+            if (mesh_.is_encroached_at(t, cavity.point)) return false;
+        }
+        if (is_part_ && records_.size() + dropped < cavity.boundary.size()) return false;
+        mesh_.capture(cavity, captured_);
+        for (const TetId t : cavity.tets) {
+            std::uint32_t& r = mesh_.record_[t.index()];
+            if (r != 0) pool().push_back(std::exchange(r, 0));
+        }
+        return true;
+    }
+    void made(VertexId v, const std::vector<TetId>& tets) override {
+        mesh_.info_[v.index()].carrier_id = captured_[0].cell.value();
+        for (std::size_t i = 0; i < tets.size(); ++i) {
+            const TetId t = tets[i];
+            const CapturedFace& c = captured_[i];
+            mesh_.cell_[t.index()] = c.cell;
+            mesh_.record_[t.index()] = 0;
+            if (!c.facet.valid() && !c.segments[0].valid() && !c.segments[1].valid() && !c.segments[2].valid()) continue;
+            const TetStore& store = mesh_.tets();
+            TetLabels labels;
+            labels.facets[store.find_corner(t, v)] = c.facet;
+            for (std::size_t k = 0; k < 3; ++k)
+                labels.segments[kEdgeOf[store.find_corner(t, c.corners[(k + 1) % 3])][store.find_corner(t, c.corners[(k + 2) % 3])]] = c.segments[k];
+            put(t, labels);
+        }
+    }
+    bool may_go_on() override { return may_go_on_(); }
+
+private:
+    static constexpr std::size_t kSpareRecords = 1024;
+
+    std::vector<std::uint32_t>& pool() { return is_part_ ? records_ : mesh_.free_records_; }
+    void put(TetId t, const TetLabels& labels) {
+        if (pool().empty()) {  // of the whole: a part's were counted
+            pool().push_back(static_cast<std::uint32_t>(mesh_.records_.size()));
+            mesh_.records_.emplace_back();
+        }
+        mesh_.record_[t.index()] = pool().back();
+        mesh_.records_[pool().back()] = labels;
+        pool().pop_back();
+    }
+
+    ConformingMesh& mesh_;
+    const std::function<bool(const Vec3&, CellId)>& is_welcome_;
+    const std::function<bool()>& may_go_on_;
+    bool is_part_ = false;
+    std::vector<std::uint32_t> records_;
+    std::vector<CapturedFace> captured_;
+    std::vector<InsideObserver> parts_;
+};
+
+/// Does p encroach upon a subface or subsegment of this tetrahedron's? @pre it has labels
+bool ConformingMesh::is_encroached_at(TetId t, const Vec3& p) const {
+    const TetLabels& l = labels(t);
+    const TetStore::Corners& c = tets().corners(t);
+    for (unsigned e = 0; e < 6; ++e)
+        if (l.segments[e].valid() && side_of_diametral_sphere(point(c[kEdgeCorners[e][0]]), point(c[kEdgeCorners[e][1]]), p) == Sign::positive) return true;
+    for (unsigned f = 0; f < 4; ++f) {
+        if (!l.facets[f].valid()) continue;
+        const auto& k = kFaceCorners[f];
+        if (side_of_equatorial_sphere(point(c[k[0]]), point(c[k[1]]), point(c[k[2]]), p) == Sign::positive) return true;
+    }
+    return false;
+}
+
+std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<const Vec3> points, InsertionReason reason,
+                                                    const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on) {
+    const std::size_t first = tri_.vertex_count();
+    tri_.reserve(first + points.size());
+    for (const Vec3& p : points) {
+        (void)tri_.add_point(p);
+        info_.push_back({.carrier = CarrierKind::region, .reason = reason});
+    }
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(first));
+    InsideObserver observer(*this, is_welcome, may_go_on);
+    std::vector<VertexId> left;
+    for (const std::uint32_t v : tri_.insert_on(workers, order, &observer)) left.push_back(VertexId{v});
+    for (std::size_t v = first; v < info_.size(); ++v) vertex_count_ += tri_.is_inserted(VertexId{v});
+    return left;
+}
+
+void ConformingMesh::insert_known(VertexId v, const Cavity& cavity, const Placement& where) {
+    info_[v.index()].carrier_id = where.carrier_id;
+    ++vertex_count_;
+    commit(v, cavity, where);
+}
+
+void ConformingMesh::renumber_tets(Workers& workers) {
+    // Labels stand by corner: they follow their vertices.
+    const TetStore& tets = tri_.tets();
+    std::vector<TetStore::Corners> labelled(records_.size());
+    for (std::size_t i = 0; i < record_.size() && i < tets.slots(); ++i)
+        if (record_[i] != 0 && tets.is_live(TetId{i})) labelled[record_[i]] = tets.corners(TetId{i});
+    const std::vector<TetId> old_of = tri_.renumber(workers);
+    std::vector<CellId> cells(old_of.size());
+    std::vector<std::uint32_t> records(old_of.size());
+    std::vector<TetLabels> ordered(1);  // 0: no labels
+    for (std::size_t i = 0; i < old_of.size(); ++i) {
+        const TetId t{i};
+        cells[i] = cell_[old_of[i].index()];
+        const std::uint32_t r = record_[old_of[i].index()];
+        if (r == 0) continue;
+        const TetLabels& before = records_[r];
+        std::array<std::size_t, 4> slot{};  // by corner: where it was
+        for (unsigned k = 0; k < 4; ++k)
+            slot[k] = static_cast<std::size_t>(std::find(labelled[r].begin(), labelled[r].end(), tets.corner(t, k)) - labelled[r].begin());
+        records[i] = static_cast<std::uint32_t>(ordered.size());
+        TetLabels& after = ordered.emplace_back();
+        for (unsigned k = 0; k < 4; ++k) after.facets[k] = before.facets[slot[k]];
+        for (unsigned e = 0; e < 6; ++e) after.segments[e] = before.segments[kEdgeOf[slot[kEdgeCorners[e][0]]][slot[kEdgeCorners[e][1]]]];
+    }
+    cell_ = std::move(cells);
+    record_ = std::move(records);
+    records_ = std::move(ordered);
+    free_records_.clear();
+}
+
+}  // namespace wellmesh
