@@ -39,6 +39,9 @@ public:
 
     /// Half of it, where a size is asked for that is finer than the ball.
     void halve_ball(VertexId v) { ball_[v.index()] /= 2; }
+    /// All radii, as far as they are known, for an undo.
+    [[nodiscard]] const std::vector<double>& balls() const { return ball_; }
+    void set_balls(const std::vector<double>& radii) { ball_ = radii; }
 
     /// Is a point of the segment in the ball of one of its ends?
     [[nodiscard]] bool in_ball_of_segment(SegmentId s, const Vec3& p);

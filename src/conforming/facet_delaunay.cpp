@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "conforming/place_point.hpp"
-#include "core/check.hpp"
 #include "core/vec3_math.hpp"
+#include "wellmesh/error.hpp"
 
 namespace wellmesh {
 
@@ -152,7 +154,10 @@ void FacetDelaunay::keep_inside(const ConformingMesh& mesh) {
     }
     triangles_.resize(kept);
     neighbours_.resize(kept);
-    WELLMESH_CHECK(Stage::conform, kept > 0);
+    if (kept > 0) return;
+    const ValidFacet& facet = mesh.plc().facets[facet_.index()];
+    throw MeshError(ErrorCode::budget_exhausted, Stage::conform, fmt::format("facet {} is as thin as the rounding of its plane and turned over by it", facet.source_facet + 1),
+                    {{EntityKind::facet, facet.source_facet + 1U, facet.origin}});
 }
 
 /// Advances a front from the outline of a cluster of missing triangles over faces of the mesh until the cluster is covered.

@@ -76,17 +76,7 @@ private:
     MeshResult run() {
         check_vertex_sizes(plc_);
         const std::uint64_t exact_before = exact_predicate_calls();
-        const ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_, guard_.checkpoint()); });
-        require_room(options_.limits, valid.vertices.size(), guard_.stage());
-        result_.statistics.coplanar_tolerance = valid.coplanar_tolerance;
-        result_.statistics.cells = valid.diagnosis.cells;
-        note_input(result_, options_, plc_, valid);
-        try {
-            fill(valid);
-        } catch (const MeshError& e) {
-            if (e.code() == ErrorCode::budget_exhausted && !valid.acute_features.empty()) throw acute_failure(valid, e, guard_);
-            throw;
-        }
+        const ValidPlc valid = fill_valid();
         const CertifyOptions bounds = certificate_bounds(result_, options_, plc_, valid, control_.stop);
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
         fail_if_refuted(result_.certificate);
@@ -100,6 +90,44 @@ private:
         report_goals(result_, options_, valid, size_rows_);
         result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
         return std::move(result_);
+    }
+
+    ValidPlc take_in() {
+        ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_, guard_.checkpoint()); });
+        require_room(options_.limits, valid.vertices.size(), guard_.stage());
+        result_.statistics.coplanar_tolerance = valid.coplanar_tolerance;
+        result_.statistics.cells = valid.diagnosis.cells;
+        result_.statistics.notes.clear();
+        note_input(result_, options_, plc_, valid);
+        return valid;
+    }
+
+    ValidPlc fill_valid() {
+        ValidPlc valid = take_in();
+        try {
+            fill(valid);
+        } catch (const MeshError& e) {
+            if (e.code() != ErrorCode::budget_exhausted || valid.acute_features.empty()) throw;
+            const MeshError failure = acute_failure(valid, e, guard_);
+            if (given_ || guard_.user_limit_spent() || !may_unmerge(options_, plc_)) throw failure;
+            valid = fill_unmerged(failure);
+        }
+        return valid;
+    }
+
+    /// Facets that are plane within the source's rounding only can be too thin for that: as the single triangles of the source they are exactly plane.
+    ValidPlc fill_unmerged(const MeshError& failure) {
+        options_.coplanar_tolerance = rounding_of_doubles(plc_);
+        try {
+            ValidPlc valid = take_in();
+            result_.statistics.notes.emplace_back("facets that are plane only within the rounding of the file were too thin to be meshed as one: their triangles stay apart");
+            fill(valid);
+            return valid;
+        } catch (const MeshError& e) {
+            if (e.code() == ErrorCode::budget_exhausted && guard_.user_limit_spent()) throw;
+            if (e.code() == ErrorCode::budget_exhausted || e.code() == ErrorCode::bad_input) throw failure;
+            throw;
+        }
     }
 
     void fill(const ValidPlc& valid) {
@@ -178,7 +206,7 @@ private:
 
     const Plc& plc_;
     const TetMesh* given_;
-    const MeshOptions options_;
+    MeshOptions options_;
     const RunControl& control_;
     RunGuard guard_;
     Workers workers_;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/refusals.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "validation/rounding.hpp"
 
 namespace wellmesh {
 namespace {
@@ -33,6 +36,14 @@ void check_vertex_sizes(const Plc& plc) {
     for (std::size_t v = 0; v < sizes.size(); ++v)
         if (!(sizes[v] >= 0) || !std::isfinite(sizes[v]))
             fail(fmt::format("the size of vertex {} is {}; it must be a finite number above 0, or 0 for none", v + plc.first_number, sizes[v]));
+}
+
+bool may_unmerge(const MeshOptions& options, const Plc& plc) { return !options.coplanar_tolerance && plc.relative_rounding > 0; }
+
+double rounding_of_doubles(const Plc& plc) {
+    double largest = 0;
+    for (const Vec3& p : plc.vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return Rounding{.largest_coordinate = largest}.merging();
 }
 
 void require_room(const Limits& limits, std::size_t vertices, Stage stage) {

@@ -19,6 +19,11 @@ void require_valid_options(const MeshOptions& options, bool given);
 /// @throws MeshError{bad_input} for sizes at vertices that are no sizes.
 void check_vertex_sizes(const Plc& plc);
 
+/// Were facets merged within a rounding that the source's format has and doubles don't?
+[[nodiscard]] bool may_unmerge(const MeshOptions& options, const Plc& plc);
+/// The coplanar tolerance of coordinates that were doubles all along.
+[[nodiscard]] double rounding_of_doubles(const Plc& plc);
+
 /// An input may conform without any new vertex, and have more than were allowed.
 /// @throws MeshError{budget_exhausted}
 void require_room(const Limits& limits, std::size_t vertices, Stage stage);

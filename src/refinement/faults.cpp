@@ -76,7 +76,7 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
 bool Refiner::is_forced(TetId t, Fault fault) const {
     if (fault != Fault::radius_edge && fault != Fault::flat) return false;
     // Flat ones between copies are for moves to mend; and where edges grade out of what copies made, too many vertices would be needed.
-    if (fault == Fault::flat || mesh_.vertex_count() > frugal_from_) return exemptions_.feature_at(t).has_value();
+    if (fault == Fault::flat || mesh_.vertex_count() > frugal_from_ || is_relieved(t)) return exemptions_.feature_at(t).has_value();
     return exemptions_.forces_shortest_edge(t);
 }
 
@@ -85,18 +85,7 @@ std::optional<ForcedBy> Refiner::forced_by(TetId t) {
     if (const auto feature = exemptions_.feature_at(t)) return feature;
     const auto& k = mesh_.tets().corners(t);
     if (std::count_if(k.begin(), k.end(), [&](VertexId v) { return mesh_.info(v).carrier != CarrierKind::region; }) < 2) return std::nullopt;
-    double radius = 0;
-    const Vec3 centre = flush_to_exact_range(circumcentre(mesh_.point(k[0]), mesh_.point(k[1]), mesh_.point(k[2]), mesh_.point(k[3]), &radius));
-    if (!in_exact_range(centre) || !mesh_.triangulation().find_conflict_cavity(centre, t, cavity_)) return std::nullopt;
-    if (const VertexId v = boundary_.ball_around(cavity_); v.valid()) return exemptions_.feature_at(v);
-    boundary_.find_encroached(cavity_, Placement::in_cell(mesh_.cell(t)), encroached_segments_, encroached_faces_);
-    VertexId ball{};
-    if (!encroached_segments_.empty()) {
-        ball = boundary_.ball_holding(longest_of(mesh_, encroached_segments_));
-    } else if (!encroached_faces_.empty()) {
-        double depth = 0;
-        ball = boundary_.ball_holding(Subface{holder_of_projection(mesh_, encroached_faces_, centre, depth)});
-    }
+    const VertexId ball = refusing_ball(t);
     return ball.valid() ? exemptions_.feature_at(ball) : std::nullopt;
 }
 

@@ -37,6 +37,16 @@ public:
     /// kSizeTolerance of their bound stay, as moves may have made them.
     RunGuard::Verdict split(TetId t, InsertionReason reason);
 
+    /// For tetrahedra that no split mended because a ball about an acute vertex is in the way: takes out what lies inside the domain around such a ball and
+    /// fills it again, but grades no more out of what touches an acute feature there. A ball that is in the way once more is halved.
+    RunGuard::Verdict grade_afresh(const std::vector<TetId>& stuck);
+    /// Radii of the balls, which grade_afresh() changes beside the mesh: for an undo. Balls are not relieved any more then.
+    [[nodiscard]] std::vector<double> balls() const { return boundary_.acute().balls(); }
+    void set_balls(const std::vector<double>& radii) {
+        boundary_.acute().set_balls(radii);
+        relieved_.clear();
+    }
+
     /// The mesh was put back to an earlier one after a split threw: what waits is of the abandoned one.
     void forget_waiting();
 
@@ -76,6 +86,9 @@ private:
     void split_flat(TetId t);
     void process_centre(TetId t, InsertionReason reason, const Vec3& centre, double radius);
     void split_sized_boundary();
+    [[nodiscard]] VertexId refusing_ball(TetId t);
+    [[nodiscard]] bool is_relieved(TetId t) const;
+    void clear_around(VertexId v);
     void insert_off_centre(TetId t, const Vec3& centre, InsertionReason reason);
     [[nodiscard]] Fault classify_strictly(TetId t, double& squared_badness) const;
     [[nodiscard]] bool strict() const { return boundary_.rules.strict; }
@@ -104,6 +117,7 @@ private:
     std::uint64_t sliver_budget_ = std::numeric_limits<std::uint64_t>::max();
     bool sliver_budget_spent_ = false;
     std::size_t frugal_from_ = std::numeric_limits<std::size_t>::max();
+    std::vector<VertexId> relieved_;     // of grade_afresh(): acute vertices
     std::size_t original_vertices_ = 0;  // of the mesh that met its size first: slivers among them are the paper's original ones
     bool size_met_ = false;
     bool outside_rules_ = false;         // the point to be inserted is no pick of the paper's

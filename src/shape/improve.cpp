@@ -363,6 +363,7 @@ RunGuard::Verdict ShapeImprover::try_afresh() {
         if (left_.size() < before && !guard_.has_too_many(mesh_.vertex_count())) continue;
         mesh_ = last;
         collect_bad();
+        if (verdict == RunGuard::Verdict::go_on) verdict = grade_afresh();
     }
     mover_.move_beside_excused(false);
     return verdict;

@@ -91,6 +91,7 @@ private:
     RunGuard::Verdict split_worse_than(double cosine);
     RunGuard::Verdict split_or_go_back(double cosine, const ConformingMesh& last);
     RunGuard::Verdict try_afresh();
+    RunGuard::Verdict grade_afresh();
     void collect_bad();
     [[nodiscard]] double badness_of(TetId t);
     /// Is badness_of(t) certainly at most the goal? Mostly found faster than the badness.

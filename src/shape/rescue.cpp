@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kMostRescued = 200;  // chains of changes about one tetrahedron cost as much as moves about a hundred
 constexpr unsigned kShoves = 8;
+constexpr unsigned kGradings = 4;
 
 }  // namespace
 
@@ -39,6 +40,45 @@ RunGuard::Verdict ShapeImprover::rescue() {
     }
     mover_.move_beside_excused(false);
     chains_.tolerates = {};
+    collect_bad();
+    return verdict;
+}
+
+/// Around the balls about acute vertices that are in the way of splits; then around those that are in the way of what is left.
+RunGuard::Verdict ShapeImprover::grade_afresh() {
+    if (!guard_.can_double()) return RunGuard::Verdict::go_on;
+    const ConformingMesh last = mesh_;
+    const std::vector<double> balls = refiner_.balls();
+    const std::size_t before = left_.size();
+    RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
+    for (unsigned r = 0; r < kGradings && !left_.empty() && verdict == RunGuard::Verdict::go_on; ++r) {
+        std::vector<TetId> stuck;
+        for (const Bad& b : left_)
+            if (const TetId t = find_tet(mesh_, b.corners); t.valid()) stuck.push_back(t);
+        const ConformingMesh previous = mesh_;
+        try {
+            verdict = refiner_.grade_afresh(stuck);
+        } catch (const MeshError& e) {
+            if (e.code() != ErrorCode::budget_exhausted) throw;
+            verdict = RunGuard::Verdict::out_of_vertices;
+        }
+        if (verdict == RunGuard::Verdict::out_of_vertices && !guard_.user_limit_spent()) {
+            mesh_ = previous;
+            refiner_.forget_waiting();
+            collect_bad();
+            verdict = RunGuard::Verdict::go_on;
+            break;
+        }
+        collect_bad();
+        if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
+        if (left_.empty() || verdict != RunGuard::Verdict::go_on) break;
+        const ConformingMesh settled = mesh_;
+        verdict = split_or_go_back(goal_cosine_, settled);
+        if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
+    }
+    if (verdict == RunGuard::Verdict::go_on && left_.size() < before && !guard_.has_too_many(mesh_.vertex_count())) return verdict;
+    mesh_ = last;
+    refiner_.set_balls(balls);
     collect_bad();
     return verdict;
 }
