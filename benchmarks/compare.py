@@ -97,7 +97,7 @@ class Comparison:
         limit, threads, a = self.arguments.limit, str(self.arguments.threads), self.arguments
 
         def ours(_):
-            result = run([self.program, "delaunay", points], limit)
+            result = run([self.program, "delaunay", points, "--threads", threads], limit)
             if result.code != 0:
                 raise Missing(f"exit {result.code}: {result.errors[-200:]}")
             report = json.loads(result.output)
@@ -132,7 +132,7 @@ class Comparison:
     def mesh_once(self, model, size, degrees):
         report = os.path.join(self.folder, "report.json")
         result = run([self.program, "mesh", model, "-o", self.out, "--size", repr(size), "--min-dihedral", str(degrees), "--seed", str(self.arguments.seed), "--quiet",
-                      "--json", report], self.arguments.limit)
+                      "--threads", str(self.arguments.threads), "--json", report], self.arguments.limit)
         if result.code not in (0, 1):
             raise Missing(f"exit {result.code}: {result.errors[-200:]}")
         with open(report) as stream:
@@ -295,7 +295,7 @@ def parsed():
     parser.add_argument("--model", action="append", default=[], help="a closed surface, plain .off, besides the cube (may be repeated)")
     parser.add_argument("--min-dihedral", type=float, action="append", help="wellmesh's goals (default 20 and 30)")
     parser.add_argument("--skip", action="append", help="leave out rivals whose name begins so")
-    parser.add_argument("--threads", type=int, default=1, help="of rivals that can use several: HXT and Gmsh")
+    parser.add_argument("--threads", type=int, default=1, help="of wellmesh, HXT and Gmsh; the others have one")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--patience", type=float, default=60, help="seconds of a run above which it isn't repeated")
     parser.add_argument("--limit", type=float, default=1200, help="seconds after which a run is ended")
@@ -312,8 +312,9 @@ def parsed():
 
 def main():
     a = parsed()
+    os.environ["OMP_NUM_THREADS"] = str(a.threads)  # HXT takes all cores otherwise, whatever its option says
     data = {"machine": machine(), "load_before": os.getloadavg()[0], "threads": a.threads, "repeats": a.repeats, "seed": a.seed}
-    print(f"{data['machine']}; load before {data['load_before']:.2f}; {a.threads} thread{'s' if a.threads > 1 else ''} where a rival has any; medians of {a.repeats}")
+    print(f"{data['machine']}; load before {data['load_before']:.2f}; {a.threads} thread{'s' if a.threads > 1 else ''} where a program has any; medians of {a.repeats}")
     good, parts = True, a.part or ["delaunay", "mesh", "growth"]
     with tempfile.TemporaryDirectory() as folder:
         comparison = Comparison(a, folder)

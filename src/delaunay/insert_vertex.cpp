@@ -49,7 +49,7 @@ TetId Triangulation::create_tet(std::size_t recycled, const std::vector<TetId>& 
 }
 
 void Triangulation::clear_local_numbers(std::size_t most) {
-    if (local_.size() < most + 1) local_.resize(2 * most + 1);
+    if (local_.size() < most + 2) local_.resize(2 * most + 2);
     local_[0] = kInfiniteVertex;
     local_count_ = 1;
 }

@@ -10,6 +10,7 @@
 // Not thread-safe, not even for reading: searches use scratch marks.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -208,11 +209,13 @@ private:
     /// 1, 2, 3, ... in order of first mention.
     std::uint32_t local_number(VertexId v) {
         if (v == kInfiniteVertex) return 0;
+        // Whether a vertex is new can't be foreseen: no branch. There is room for one number too many.
         std::uint32_t& number = vertices_[v.index()].local;
-        if (number >= local_count_ || local_[number] != v) {
-            number = local_count_++;
-            local_[number] = v;
-        }
+        const std::uint32_t known = std::min(number, local_count_);
+        const bool is_new = known == local_count_ || local_[known] != v;
+        number = is_new ? local_count_ : known;
+        local_[number] = v;
+        local_count_ += is_new ? 1 : 0;
         return number;
     }
     template <bool kOnHull, bool kByTable>
