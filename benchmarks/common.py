@@ -66,7 +66,7 @@ def judge(referee, mesh, plc, min_dihedral=20.0, tolerance=None, max_radius_edge
     # compared below without exemptions: counts and measured values of all tetrahedra
     result = subprocess.run([referee, mesh, *options, *(["--exempt", exempt] if exempt else [])], capture_output=True, text=True)
     try:
-        verdict = json.loads(result.stdout)
+        verdict = json.loads(re.sub(r":(-?)inf\b", r":\1Infinity", result.stdout))  # R/L of a flat tetrahedron, as C++ writes it
     except ValueError:
         return {"ok": False, "failures": [f"referee ended {result.returncode}: {result.stderr.strip()[-300:]}"]}
     verdict.setdefault("failures", [])
