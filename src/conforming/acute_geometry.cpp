@@ -176,17 +176,17 @@ std::optional<Vec3> AcuteGeometry::swung_about(VertexId v, FacetId f, const Vec3
 std::optional<AcuteGeometry::FacetCopy> AcuteGeometry::copy_on_facet(FacetId f, const CarriedWitness& q, const Vec3& centre, double radius) const {
     std::optional<FacetCopy> best;
     double least = std::numeric_limits<double>::infinity();
-    const auto offer = [&](const std::optional<Vec3>& p, std::uint8_t generation) {
+    const auto offer = [&](const std::optional<Vec3>& p, std::uint8_t generation, double lever = std::numeric_limits<double>::infinity()) {
         if (!p || !(squared_distance(*p, centre) < radius * radius)) return;
         const double moved = squared_distance(*p, q.point);
         if (moved >= least) return;
         least = moved;
-        best = FacetCopy{project_to_facet(plc_->facets[f.index()], *p), generation};
+        best = FacetCopy{project_to_facet(plc_->facets[f.index()], *p), generation, lever};
     };
     const auto facets = facets_of(q.carrier, q.carrier_id);
     if (std::find(facets.begin(), facets.end(), f) != facets.end()) return best;  // it lies on f itself
     for (const FacetId g : facets)
-        for (const SegmentId s : shared_segments(f, g)) offer(rotated_about(s, f, q.point, centre), q.generation);
+        for (const SegmentId s : shared_segments(f, g)) offer(rotated_about(s, f, q.point, centre), q.generation, distance(centre, project_to_segment(*plc_, s, centre)));
     if (best) return best;
     for (const SegmentId s : segments_of(q.carrier, q.carrier_id))
         for (const VertexId v : plc_->segments[s.index()].ends)

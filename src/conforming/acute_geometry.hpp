@@ -58,6 +58,7 @@ public:
     struct FacetCopy {
         Vec3 point{};
         std::uint8_t generation = 0;
+        double lever = 0;  ///< distance of the centre from the segment that it was rotated about; infinite if swung about a vertex
     };
     [[nodiscard]] std::optional<FacetCopy> copy_on_facet(FacetId f, const CarriedWitness& q, const Vec3& centre, double radius) const;
     /// The direction, a unit vector of the facet's plane, in which the witness's copy lies as seen from v; for the arcs on the balls. The centre

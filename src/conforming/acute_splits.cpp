@@ -14,6 +14,10 @@ namespace {
 
 /// A copy nearer than this part of the subsegment to one of its ends would make a short piece: the middle does then.
 constexpr double kNearestToEnd = 0.2;
+/// Part of the room that a foot has before what it is the foot of encroaches one of the pieces.
+constexpr double kShift = 0.2;
+/// The centre nearer to the axis of a copy than this part of the radius.
+constexpr double kShortLever = 0.1;
 /// Splits this near to a ball, in its radii, go to its sphere: the piece between would be short.
 constexpr double kSphereReach = 1.3;
 /// An encroaching vertex's projection is a better place than the circumcentre if it keeps this part of the radius from the corners.
@@ -114,6 +118,16 @@ VertexId BoundaryRefiner::ball_holding(const Subface& s) {
     return {};
 }
 
+/// The foot of q on the subsegment: q encroaches neither piece. Feet alone would make rectangles, whose corners are on one circle, so they are
+/// shifted by a part of what q allows.
+Vec3 BoundaryRefiner::foot_on_segment(const Subsegment& s, const CarriedWitness& q, double unit) const {
+    const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b);
+    const double squared_length = squared_distance(a, b);
+    const Vec3 foot = a + (dot(q.point - a, b - a) / squared_length) * (b - a);
+    const double room = std::min(squared_distance(foot, q.point) / squared_length, kConformityJitter);
+    return project_to_segment(mesh_.plc(), s.segment, foot + (kShift * room * (2 * unit - 1)) * (b - a));
+}
+
 /// Empty: inside a ball, where nothing is split for quality.
 std::optional<BoundaryRefiner::AcutePlace> BoundaryRefiner::place_on_segment(const Subsegment& s, const SplitRequest& request) {
     const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b), middle = 0.5 * (a + b);
@@ -129,8 +143,18 @@ std::optional<BoundaryRefiner::AcutePlace> BoundaryRefiner::place_on_segment(con
     std::optional<CarriedWitness> q = request.witness;
     if (!q && request.for_conformity()) q = nearest_witness(middle, length / 2, mesh_.triangulation().tet_of(s.a), request.parent);
     AcutePlace place;
+    place.halves = true;
     const std::uint64_t key = mix64(seed_, mix64(std::min(s.a, s.b).value(), std::max(s.a, s.b).value()));
     place.point = project_to_segment(mesh_.plc(), s.segment, middle + (kConformityJitter / 2 * (2 * unit_double(mix64(key, 0)) - 1)) * (b - a));
+    // Of segments only: what facets hold may still go elsewhere, and each new place on one of many spokes is copied to all.
+    if (q && q->carrier == CarrierKind::segment) {
+        const Vec3 foot = foot_on_segment(s, *q, unit_double(mix64(key, 1)));
+        const double along = dot(foot - a, b - a) / (length * length);
+        if (along >= kNearestToEnd && along <= 1 - kNearestToEnd) {
+            place.point = foot;
+            place.halves = false;
+        }
+    }
     if (q)
         if (const auto copy = acute_.copy_on_segment(s.segment, *q)) {
             const Vec3 p = at_distance(s.segment, copy->end, copy->distance);
@@ -138,6 +162,7 @@ std::optional<BoundaryRefiner::AcutePlace> BoundaryRefiner::place_on_segment(con
             const bool on_sphere = std::abs(copy->distance - acute_.ball_radius(copy->end)) <= 1e-9 * copy->distance;
             if (along > 0 && along < 1 && (on_sphere || (along >= kNearestToEnd && along <= 1 - kNearestToEnd))) {
                 place.point = p;
+                place.halves = false;
                 place.info.copied = true;
             }
         }
@@ -148,6 +173,7 @@ std::optional<BoundaryRefiner::AcutePlace> BoundaryRefiner::place_on_segment(con
         const double along = dot(p - a, b - a) / (length * length);
         if (!(along > 1e-6 && along < 1 - 1e-6)) continue;
         place.point = p;
+        place.halves = false;
         place.info.ball = end;
     }
     return place;
@@ -183,7 +209,7 @@ Vec3 BoundaryRefiner::cut_arc(FacetId f, const std::array<VertexId, 3>& corners,
 }
 
 /// Where to split a subface, or a triangle of the facet's own Delaunay triangulation that is no face of the mesh yet.
-BoundaryRefiner::AcutePlace BoundaryRefiner::place_on_facet(FacetId f, const std::array<VertexId, 3>& corners, TetId near, const SplitRequest& request) {
+BoundaryRefiner::AcutePlace BoundaryRefiner::place_on_facet(FacetId f, const std::array<VertexId, 3>& corners, TetId near, const SplitRequest& request, bool copies) {
     const Vec3 &a = mesh_.point(corners[0]), &b = mesh_.point(corners[1]), &c = mesh_.point(corners[2]);
     const ValidFacet& facet = mesh_.plc().facets[f.index()];
     double radius = 0;
@@ -197,11 +223,12 @@ BoundaryRefiner::AcutePlace BoundaryRefiner::place_on_facet(FacetId f, const std
         place.witness = candidate();
         return place;
     }
-    if (q) {
+    if (q && copies) {
         if (const auto copy = acute_.copy_on_facet(f, *q, centre, radius)) {
             place.point = copy->point;
             place.info.copied = true;
             place.info.generation = copy->generation;
+            place.lever = copy->lever / radius;
             place.witness = *q;
             return place;
         }
@@ -280,8 +307,8 @@ Subsegment BoundaryRefiner::first_crossed(FacetId f, const Vec3& p, const Vec3& 
 }
 
 /// Splits a subface (known: labelled) or a triangle that is no face of the mesh yet; or the subsegments that its point would encroach.
-BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std::array<VertexId, 3>& corners, bool labelled, TetId near, const SplitRequest& request) {
-    AcutePlace place = place_on_facet(f, corners, near, request);
+BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std::array<VertexId, 3>& corners, bool labelled, TetId near, const SplitRequest& request, bool copies) {
+    AcutePlace place = place_on_facet(f, corners, near, request, copies);
     const ValidFacet& facet = mesh_.plc().facets[f.index()];
     const Placement where = Placement::on_facet(f);
     Triangulation& tri = mesh_.triangulation();
@@ -331,6 +358,13 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std:
         const std::vector<Subsegment> targets = encroached_segments_;
         SplitRequest passed = request;
         passed.witness = place.witness;
+        // No place there for the copy: halves would chase it beside a corner. Near the axis the copy is as far from the centre as the corners are, and the
+        // centre, which splits the axis, serves all facets about it.
+        const auto is_halved = [&](const Subsegment& target) {
+            const auto at = place_on_segment(target, passed);
+            return at && at->halves;
+        };
+        if (place.lever < kShortLever && std::all_of(targets.begin(), targets.end(), is_halved)) return split_acute(f, corners, labelled, near, request, false);
         for (const Subsegment& target : targets)
             if (mesh_.find_subsegment(target).valid()) split(target, passed);
         return SplitOutcome::deferred;

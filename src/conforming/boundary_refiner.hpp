@@ -143,22 +143,26 @@ private:
         Vec3 point{};
         VertexInfo info{};        // copied, generation, ball
         CarriedWitness witness{}; // for the subsegments that the point encroaches
+        double lever = 1;         // of a copy about a shared segment: the centre's distance from that, in radii
+        bool halves = false;      // the middle of a subsegment, for want of a better place
     };
     [[nodiscard]] CarriedWitness witness_of(VertexId v) const;
     [[nodiscard]] std::optional<CarriedWitness> nearest_witness(const Vec3& centre, double radius, TetId near, VertexId fallback);
     [[nodiscard]] std::optional<AcutePlace> place_on_segment(const Subsegment& s, const SplitRequest& request);
-    [[nodiscard]] AcutePlace place_on_facet(FacetId f, const std::array<VertexId, 3>& corners, TetId near, const SplitRequest& request);
+    [[nodiscard]] AcutePlace place_on_facet(FacetId f, const std::array<VertexId, 3>& corners, TetId near, const SplitRequest& request, bool copies);
     [[nodiscard]] VertexId vertex_within(const Vec3& p, double reach, TetId near);
     [[nodiscard]] VertexId fan_apex(const std::array<VertexId, 3>& corners);
     [[nodiscard]] Vec3 cut_arc(FacetId f, const std::array<VertexId, 3>& corners, VertexId apex, const std::optional<CarriedWitness>& q);
     [[nodiscard]] Vec3 at_distance(SegmentId s, VertexId end, double d) const;
+    [[nodiscard]] Vec3 foot_on_segment(const Subsegment& s, const CarriedWitness& q, double unit) const;
     [[nodiscard]] Subsegment touched_outline(FacetId f, const Vec3& inside) const;
     [[nodiscard]] Subsegment first_crossed(FacetId f, const Vec3& p, const Vec3& q);
     VertexId insert_on_segment(const Subsegment& s, const VertexInfo& info);
     [[noreturn]] void give_up(const Subsegment& s) const;
     [[noreturn]] void give_up(const Subface& s) const;
     SplitOutcome split_acute(const Subsegment& s, const AcutePlace& place, const SplitRequest& request);
-    SplitOutcome split_acute(FacetId f, const std::array<VertexId, 3>& corners, bool labelled, TetId near, const SplitRequest& request);
+    /// Without copies the place is the circumcentre.
+    SplitOutcome split_acute(FacetId f, const std::array<VertexId, 3>& corners, bool labelled, TetId near, const SplitRequest& request, bool copies = true);
 
     ConformingMesh& mesh_;
     RunGuard& guard_;
