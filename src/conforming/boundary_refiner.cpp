@@ -339,6 +339,7 @@ bool BoundaryRefiner::step() {
     if (!faces_.empty()) {
         const WaitingFace w = faces_.front();
         faces_.pop_front();
+        if (!mesh_.find_subface(w.s).valid()) return true;  // split in the meantime
         poll_or_throw(w.s.facet);
         const std::size_t before = mesh_.vertex_count();
         const SplitOutcome outcome = split(w.s, {InsertionReason::encroachment, w.encroacher});

@@ -56,6 +56,8 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
             const std::uint64_t key = mix64(seed_, mix64(m.corners[0].value(), mix64(m.corners[1].value(), m.corners[2].value())));
             const Vec3 unit = picking_point(2, key, 1);
             const Vec3 wanted = project_to_facet(facet, centre + (rules.jitter * radius * unit.x) * facet.axis_u + (rules.jitter * radius * unit.y) * facet.axis_v);
+            // The last vertex allowed may have been the last one needed.
+            if (mesh_.vertex_count() > before && guard_.has_too_many(mesh_.vertex_count() + 1)) break;
             poll_or_throw(f);
             taken.push_back(centre);
             if (acute_.any()) split_acute(f, m.corners, false, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
