@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "support/acute_plcs.hpp"
 #include "support/expect_result.hpp"
@@ -64,6 +65,29 @@ TEST_P(AcutePlcs, EndInAConformingMeshOrATypedError) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, AcutePlcs, ::testing::Range<std::uint64_t>(0, kGroups));
+
+std::size_t vertices_for_conformity(const Plc& plc) {
+    MeshOptions options;
+    options.slivers = SliverStrategy::none;
+    options.quality = {.max_radius_edge_ratio = 1e300, .min_dihedral_angle_deg = 0};
+    const MeshResult result = generate(plc, options);
+    expect_certified(plc, result);
+    return result.mesh.vertices.size();
+}
+
+/// Rotated coordinates are rounded, and symmetric input is symmetric but for that: rectangles have no circle then, and axes are not quite shared.
+TEST(AcuteSymmetry, SurvivesRotations) {
+    const std::vector<NamedPlc> all{{"fan of 16", fan(16)},     {"fan of 64", fan(64)},      {"blades, 30", two_blades(30)}, {"blades, 5", two_blades(5)},
+                                    {"blades, 0.1", two_blades(0.1)}, {"wedge, 0.1", wedge(0.1)}, {"wedge, 0.01", wedge(0.01)}};
+    for (const NamedPlc& named : all) {
+        const std::size_t given = vertices_for_conformity(named.plc);
+        for (std::uint64_t rotation = 1; rotation <= 3; ++rotation)
+            for (const double scale : {1.0, 1e-6}) {
+                SCOPED_TRACE(named.name + ", rotation " + std::to_string(rotation) + ", scale " + std::to_string(scale));
+                EXPECT_LE(vertices_for_conformity(transformed(named.plc, rotation, 0, scale)), 2 * given + 40);
+            }
+    }
+}
 
 TEST(AcutePlcInput, IsVariedAndSharp) {
     std::map<std::string, int> kinds;

@@ -54,6 +54,18 @@ Builder in_unit_cube() {
 
 double draw(std::uint64_t seed, std::uint64_t& n) { return unit_double(mix64(seed, ++n)); }
 
+/// Rectangles around one upright segment in the unit cube, at these azimuths.
+Plc blades(const std::vector<double>& azimuths) {
+    Builder b = in_unit_cube();
+    const std::uint32_t low = b.vertex(0.5, 0.5, 0.2), high = b.vertex(0.5, 0.5, 0.8);
+    for (const double t : azimuths) {
+        const double x = 0.5 + 0.3 * std::cos(t), y = 0.5 + 0.3 * std::sin(t);
+        const std::uint32_t bottom = b.vertex(x, y, 0.2), top = b.vertex(x, y, 0.8);
+        b.facet({low, high, top, bottom});
+    }
+    return b.take();
+}
+
 }  // namespace
 
 Plc wedge(double angle_deg) {
@@ -80,16 +92,13 @@ Plc spike(double angle_deg, int sides) {
     return b.take();
 }
 
-Plc fan(int blades) {
-    Builder b = in_unit_cube();
-    const std::uint32_t low = b.vertex(0.5, 0.5, 0.2), high = b.vertex(0.5, 0.5, 0.8);
-    for (int i = 0; i < blades; ++i) {
-        const double t = 10 * kDegree + kTurn * i / blades, x = 0.5 + 0.3 * std::cos(t), y = 0.5 + 0.3 * std::sin(t);
-        const std::uint32_t bottom = b.vertex(x, y, 0.2), top = b.vertex(x, y, 0.8);
-        b.facet({low, high, top, bottom});
-    }
-    return b.take();
+Plc fan(int count) {
+    std::vector<double> azimuths;
+    for (int i = 0; i < count; ++i) azimuths.push_back(10 * kDegree + kTurn * i / count);
+    return blades(azimuths);
 }
+
+Plc two_blades(double angle_deg) { return blades({20 * kDegree, (20 + angle_deg) * kDegree}); }
 
 Plc tip_to_tip(double gap_deg, int sides, double twist) {
     Builder b = in_unit_cube();

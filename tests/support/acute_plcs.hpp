@@ -13,6 +13,7 @@ namespace wellmesh::testing {
 Plc wedge(double angle_deg);                                      ///< a triangular prism of unit length, two unit squares at this angle
 Plc spike(double angle_deg, int sides = 5);                       ///< a pyramid of unit height, opposite slopes at about this angle
 Plc fan(int blades);                                              ///< rectangles around one segment in the unit cube, at equal angles
+Plc two_blades(double angle_deg);                                 ///< two such rectangles at this angle
 Plc tip_to_tip(double gap_deg, int sides, double twist);          ///< two open cones in the unit cube, the gap between their slopes
 Plc touching_triangles(double angle_deg);                         ///< corners of triangles inside a rectangle's edge, one at this angle to it
 Plc segments_on_a_facet(double angle_deg);                        ///< from its inside, a corner and an edge

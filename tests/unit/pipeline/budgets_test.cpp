@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "support/acute_plcs.hpp"
 #include "support/expect_result.hpp"
 #include "support/synthetic_plcs.hpp"
 #include "wellmesh/generate.hpp"
@@ -98,6 +99,24 @@ TEST(Budgets, EveryVertexBudgetIsKept) {
         EXPECT_LE(outcome.result->mesh.vertices.size(), most);
     }
     EXPECT_GT(meshes, 100U);
+}
+
+/// Also where facets ask for splits that others have made superfluous by then.
+TEST(Budgets, AsManyVerticesAsConformityTakesAreEnough) {
+    std::size_t split = 0;
+    for (const Plc& plc : {bundle(1, 7), bundle(2, 7), bundle(3, 7), tip_to_tip(1, 10, 0.5), two_blades(0.1)}) {
+        MeshOptions options;
+        options.slivers = SliverStrategy::none;
+        options.quality = {.max_radius_edge_ratio = 1e300, .min_dihedral_angle_deg = 0};
+        const Outcome free = run(plc, options, {});
+        ASSERT_TRUE(free.result);
+        options.limits.max_vertices = free.result->mesh.vertices.size();
+        split += *options.limits.max_vertices - plc.vertices.size();
+        const Outcome enough = run(plc, options, {});
+        ASSERT_TRUE(enough.result) << enough.error->what();
+        EXPECT_EQ(enough.result->mesh.vertices, free.result->mesh.vertices);
+    }
+    EXPECT_GT(split, 300U);
 }
 
 TEST(Budgets, FewerVerticesThanTheInputHasAreTooFew) {
