@@ -73,7 +73,7 @@ TEST(LatticeSeeding, KeepsClearOfCornersThatPointInwards) {
         LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), staged.workers).seed();
         const double clearance = 0.4 * kCircumradiusPerEdgeLength * edge_length;  // 0.5, but for places beside an edge
         for (std::size_t i = 0; i < staged.mesh.vertex_slots(); ++i) {
-            if (staged.mesh.info(VertexId{i}).reason != InsertionReason::lattice) continue;
+            if (staged.mesh.info(VertexId{i}).reason != InsertionReason::lattice || !staged.mesh.triangulation().is_inserted(VertexId{i})) continue;
             const Vec3& p = staged.mesh.point(VertexId{i});
             // The cavity is the middle one of 3 x 3 x 3 unit cells.
             const Vec3 nearest{std::clamp(p.x, 1.0, 2.0), std::clamp(p.y, 1.0, 2.0), std::clamp(p.z, 1.0, 2.0)};
