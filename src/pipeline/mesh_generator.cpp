@@ -81,6 +81,8 @@ private:
         const ValidPlc valid = fill_valid();
         const CertifyOptions bounds = certificate_bounds(result_, options_, plc_, valid, control_.stop);
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
+        // What was joined may have had no room between, such as a body as flat as the rounding: then the result is another domain's.
+        if (joined_ && is_refuted(result_.certificate)) throw *refusal_;
         fail_if_refuted(result_.certificate);
         note_lower_angle(result_);
         try {
@@ -114,6 +116,7 @@ private:
             if (given_ || refusal.code() != ErrorCode::bad_input || options_.thin_features != ThinFeatures::join) throw;
             joined_ = join_input(plc_, options_);
             if (!joined_) throw;
+            refusal_ = refusal;
             return fill_joined(refusal);
         }
     }
@@ -241,6 +244,7 @@ private:
     const TetMesh* given_;
     MeshOptions options_;
     std::optional<JoinedPlc> joined_;  ///< what is meshed in place of plc_, if that is too thin
+    std::optional<MeshError> refusal_;  ///< why it had to be joined
     const RunControl& control_;
     RunGuard guard_;
     Workers workers_;

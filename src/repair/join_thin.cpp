@@ -187,15 +187,17 @@ JoinedPlc nothing_joined(const Plc& plc, double tolerance) {
 }
 
 bool join_thin(JoinedPlc& joined, const Diagnosis& found) {
+    const std::size_t before = joined.statistics.joined.size();
     Leader leader(joined);
     for (const Defect& d : found.defects) {
         if (d.severity != Severity::error) continue;
-        if (d.kind != DefectKind::feature_too_thin || d.elements.size() != 2) return false;
+        if (d.kind != DefectKind::feature_too_thin) return false;
+        if (d.elements.size() != 2) continue;  // needles among coplanar triangles
         const std::uint64_t v = d.elements[0].number - joined.plc.first_number, f = d.elements[1].number - joined.plc.first_number;
         if (!leader.note(static_cast<Vertex>(v), static_cast<std::uint32_t>(f), d.value)) return false;
     }
     leader.lead();
-    return taper_short_edges(joined);
+    return taper_short_edges(joined) && joined.statistics.joined.size() > before;
 }
 
 }  // namespace wellmesh
