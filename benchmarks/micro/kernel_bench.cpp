@@ -39,15 +39,17 @@ std::vector<Vec3> queries(bool in_order) {
 Triangulation triangulated() {
     const std::vector<Vec3> points = uniform_points(kPoints, 1);
     Triangulation mesh({0, 0, 0}, {1, 1, 1});
-    mesh.insert_all_in_order(points, biased_spatial_order(points));
+    Workers alone(1);
+    mesh.insert_all_in_order(points, biased_spatial_order(points), alone);
     return mesh;
 }
 
 void bulk_insertion(benchmark::State& state) {
     const std::vector<Vec3> points = uniform_points(static_cast<std::size_t>(state.range(0)), 1);
+    Workers workers(static_cast<unsigned>(state.range(1)));
     for (auto _ : state) {
         Triangulation mesh({0, 0, 0}, {1, 1, 1});
-        mesh.insert_all_in_order(points, biased_spatial_order(points));
+        mesh.insert_all_in_order(points, biased_spatial_order(points, workers), workers);
         benchmark::DoNotOptimize(mesh.tets().live());
     }
     state.SetItemsProcessed(state.iterations() * state.range(0));
@@ -127,7 +129,7 @@ void batch(benchmark::State& state) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kQueries));
 }
 
-BENCHMARK(bulk_insertion)->Arg(10'000)->Arg(100'000)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(bulk_insertion)->Args({10'000, 1})->Args({100'000, 1})->Args({1'000'000, 1})->Args({1'000'000, 2})->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(spatial_sort)->Unit(benchmark::kMillisecond);
 BENCHMARK(walk<true>);
 BENCHMARK(walk<false>);

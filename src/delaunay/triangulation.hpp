@@ -168,6 +168,8 @@ public:
     void set_point(VertexId v, const Vec3& p) { vertices_[v.index()].point = p; }  ///< @pre v is not inserted
 
     void reserve(std::size_t vertices);
+    /// Gives back memory that only changes and searches need, until the next one.
+    void drop_scratch() { mark_.release(); }
 
 private:
     /// Half a cache line, so that a conflict test, the join to a cavity and the star's entry touch one line a vertex.

@@ -33,18 +33,14 @@ DelaunayResult triangulate_points(std::span<const Vec3> points, unsigned threads
     const std::vector<std::uint32_t> order = biased_spatial_order(points, workers);
     if (!mesh.insert_all_in_order(points, order, workers)) throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all points lie in one plane: there is no tetrahedron");
     result.duplicates = mesh.duplicate_count();
-    const TetStore& tets = mesh.tets();
-    std::size_t count = 0;
+    mesh.drop_scratch();
     visit_in_canonical_order<false>(
-        tets, mesh.vertex_count(), workers,
-        [&](std::size_t n) {
-            count = n;
-            result.mesh.tets.resize(n);
-        },
+        mesh.tets(), mesh.vertex_count(), workers, [&](std::size_t n) { result.mesh.tets.resize(n); },
         [&](std::size_t place, TetId, const TetStore::Corners& c) {
             result.mesh.tets[place] = {order[c[0].index()], order[c[1].index()], order[c[2].index()], order[c[3].index()]};
         });
-    result.mesh.tet_regions.assign(count, 1);
+    mesh = Triangulation();  // before there is more to hold
+    result.mesh.tet_regions.assign(result.mesh.tets.size(), 1);
     result.mesh.vertices.assign(points.begin(), points.end());
     return result;
 }

