@@ -20,7 +20,7 @@ constexpr std::size_t kMostListed = 20;  // of the text; the statistics have all
 std::optional<JoinedPlc> join_input(const Plc& plc, const MeshOptions& options) {
     Diagnosis found = diagnose(plc, options);
     const auto joinable = [](const Defect& d) { return d.severity != Severity::error || d.kind == DefectKind::feature_too_thin; };
-    if (!found.has_errors() || !std::all_of(found.defects.begin(), found.defects.end(), joinable)) return std::nullopt;
+    if (!std::all_of(found.defects.begin(), found.defects.end(), joinable)) return std::nullopt;
     Rounding rounding{.relative = std::max(0.0, plc.relative_rounding), .override_with = options.coplanar_tolerance};
     for (const Vec3& p : plc.vertices) rounding.largest_coordinate = std::max({rounding.largest_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     JoinedPlc joined = nothing_joined(plc, rounding.closing());

@@ -110,10 +110,15 @@ private:
     }
 
     ValidPlc fill_valid() {
+        const std::optional<double> coplanar_tolerance = options_.coplanar_tolerance;
         try {
             return fill_stated();
         } catch (const MeshError& refusal) {
-            if (given_ || refusal.code() != ErrorCode::bad_input || options_.thin_features != ThinFeatures::join) throw;
+            // Slits within a coarse rounding may be found as late as when they can't be conformed to.
+            const bool late = refusal.stage() == Stage::conform && plc_.relative_rounding > 0 && !guard_.user_limit_spent() &&
+                              (refusal.code() == ErrorCode::unsupported_acute || refusal.code() == ErrorCode::internal_invariant);
+            if (given_ || !(late || refusal.code() == ErrorCode::bad_input) || options_.thin_features != ThinFeatures::join) throw;
+            options_.coplanar_tolerance = coplanar_tolerance;
             joined_ = join_input(plc_, options_);
             if (!joined_) throw;
             refusal_ = refusal;

@@ -104,6 +104,16 @@ TEST(ThinFeatures, StepsAreShutWhereverTheyAre) {
     }
 }
 
+/// Facets of different markers are never merged, so validation sees no thin one; their slits turn up where they can't be conformed to.
+TEST(ThinFeatures, StepsBetweenMarkersAreShutWhenFoundLate) {
+    Plc plc = stepped_solid();
+    for (std::size_t f = 0; f < plc.facets.size(); ++f) plc.facets[f].marker = static_cast<std::int32_t>(100 + f);
+    expect_joined(plc, generate(plc));
+    MeshOptions options;
+    options.thin_features = ThinFeatures::refuse;
+    EXPECT_THROW((void)generate(plc, options), MeshError);
+}
+
 TEST(ThinFeatures, AreRefusedOnRequest) {
     MeshOptions options;
     options.thin_features = ThinFeatures::refuse;
