@@ -232,8 +232,20 @@ void add_threads_flag(CLI::App& command, unsigned& threads) {
         ->type_name("N")->default_str(fmt::format("{}", threads));
 }
 
+void add_thin_features_flag(CLI::App& command, MeshOptions& options) {
+    command.add_option_function<std::string>(
+        "--thin-features",
+        [&options](const std::string& text) {
+            if (text != "join" && text != "refuse") throw CLI::ValidationError("--thin-features", fmt::format("'{}' is neither join nor refuse", text));
+            options.thin_features = text == "join" ? ThinFeatures::join : ThinFeatures::refuse;
+        },
+        "what is thinner than the rounding of the input's coordinates: join (closed within that rounding, reported) or refuse (an error)")
+        ->type_name("WHAT")->default_str("join");
+}
+
 void add_limit_flags(CLI::App& command, MeshOptions& options) {
     add_coplanar_tolerance_flag(command, options);
+    add_thin_features_flag(command, options);
     command.add_option_function<std::string>(
         "--max-vertices", [&options](const std::string& text) { options.limits.max_vertices = read_count(text, "--max-vertices"); },
         "stop at this many vertices, input included (default: none)")

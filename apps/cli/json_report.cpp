@@ -83,6 +83,7 @@ Json to_json(const MeshOptions& options) {
     json["time_limit_seconds"] = options.limits.time ? Json(static_cast<double>(options.limits.time->count()) / 1000) : Json(nullptr);
     json["max_memory_bytes"] = or_null(options.limits.memory_bytes);
     json["coplanar_tolerance"] = or_null(options.coplanar_tolerance);
+    json["thin_features"] = options.thin_features == ThinFeatures::join ? "join" : "refuse";
     json["seed"] = options.seed;
     json["slivers"] = to_string(options.slivers);
     json["seeding"] = options.seeding == Seeding::automatic ? "auto" : "off";
@@ -193,8 +194,15 @@ Json to_json(const GivenMeshStatistics& given) {
     return json;
 }
 
+Json to_json(const JoinStatistics& joined) {
+    Json features = Json::array();
+    for (const JoinedFeature& f : joined.joined) features.push_back({{"vertex", to_json(f.vertex)}, {"with", to_json(f.with)}, {"distance", f.distance}});
+    return {{"tolerance", joined.tolerance}, {"largest_move", joined.largest_move}, {"features", std::move(features)}};
+}
+
 Json to_json(const MeshStatistics& statistics) {
     Json json;
+    if (statistics.joined) json["joined"] = to_json(*statistics.joined);
     json["cells"] = to_json(statistics.cells);
     if (statistics.given) json["given_mesh"] = to_json(*statistics.given);
     json["input_vertices"] = statistics.input_vertices;

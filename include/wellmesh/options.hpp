@@ -112,6 +112,10 @@ struct Limits {
 /// Vertices from a body-centred cubic lattice inside, where a size is asked for: about a third fewer for the same size.
 enum class Seeding : std::uint8_t { automatic, off };
 
+/// What becomes of a vertex that is nearer to a facet than the rounding of the input's coordinates, so that no mesh of doubles could keep them apart:
+/// the gap is closed within that rounding, and the result says so; or the input is refused.
+enum class ThinFeatures : std::uint8_t { join, refuse };
+
 inline constexpr unsigned kMostThreads = 1024;  ///< beyond any machine's cores: more could only be a slip
 
 struct MeshOptions {
@@ -124,6 +128,7 @@ struct MeshOptions {
     Seeding seeding = Seeding::automatic;
     /// Overrides the local planarity tolerance by which facets are merged and accepted, in input units.
     std::optional<double> coplanar_tolerance{};
+    ThinFeatures thin_features = ThinFeatures::join;
     /// Input, options and seed fix the output bytes (time limits and cancellation apart).
     std::uint64_t seed = 0;
     /// Threads at work, the caller's among them; 0: as many as the machine has cores. Never changes the output. Callbacks come on the caller's thread.

@@ -47,7 +47,22 @@ struct GivenMeshStatistics {
     std::uint64_t added_for_refinement = 0;    ///< until radius-edge ratio and size were met
 };
 
+/// A vertex and what it was joined with, numbered as the source does: both were thinner than the rounding of the coordinates.
+struct JoinedFeature {
+    ElementRef vertex;
+    ElementRef with;      ///< a vertex, or a facet that was led through the vertex
+    double distance = 0;  ///< before, input units
+};
+
+/// The input's thin places that were closed before it was meshed. Every input vertex stays where it is; facets and segments were led through them.
+struct JoinStatistics {
+    double tolerance = 0;     ///< only what was nearer than this was joined, input units: the rounding of the input's coordinates
+    double largest_move = 0;  ///< no point of a facet or segment went farther than this
+    std::vector<JoinedFeature> joined;
+};
+
 struct MeshStatistics {
+    std::optional<JoinStatistics> joined{};  ///< if anything was
     std::optional<GivenMeshStatistics> given{};  ///< improve() only
     std::vector<StageTime> stages;
     std::vector<CellSummary> cells;  ///< of the input, the unbounded one first

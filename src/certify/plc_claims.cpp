@@ -253,7 +253,8 @@ Claim PlcComparison::segments() const {
     const std::vector<OnEdge> on_edges = vertices_on_edges();
     const auto joined = [&](std::uint32_t v, std::uint32_t w) { return has_edge(mesh_, stars_, {std::min(v, w), std::max(v, w)}); };
     // How far to look for the next vertex of a chain: others may lie within the tolerance of the segment without being on it.
-    constexpr std::size_t kLookAhead = 16;
+    // Where an edge much shorter than the tolerance ends, the mesh has as fine vertices: hundreds.
+    constexpr std::size_t kLookAhead = 4096;
     auto begin = on_edges.begin();
     for (std::uint32_t e = 0; e < surface_.edges.size(); ++e) {
         const auto end = std::find_if(begin, on_edges.end(), [&](const OnEdge& o) { return o.edge != e; });

@@ -32,6 +32,7 @@ CertifyOptions certificate_bounds(MeshResult& result, const MeshOptions& options
     const double extent = input_extent(plc);
     // Beyond the defaults only by what the input's own rounding did: the facets' tolerance, and the bend that it makes in the mesh.
     bounds.tolerance = std::max(bounds.tolerance, 4 * valid.coplanar_tolerance / extent);
+    if (result.statistics.joined) bounds.tolerance = std::max(bounds.tolerance, 1.01 * result.statistics.joined->largest_move / extent + 4 * valid.coplanar_tolerance / extent);
     if (4 * valid.coplanar_tolerance > 1e-12 * extent) bounds.flat_angle_rad = std::max(bounds.flat_angle_rad, 1.01 * largest_bend_rad(result.mesh));
     result.statistics.certificate_tolerance = bounds.tolerance;
     result.statistics.certificate_flat_angle_rad = bounds.flat_angle_rad;

@@ -77,6 +77,8 @@ std::vector<std::string> check(const MeshOptions& options) {
     if (const auto m = options.limits.memory_bytes) need(*m >= kLeastMemory, "memory limit", "at least 2^20 bytes", static_cast<double>(*m));
     if (const auto d = options.coplanar_tolerance) need(*d >= 0 && *d <= kLargest, "coplanar tolerance", "a finite number, at least 0", *d);
     if (options.threads > kMostThreads) problems.push_back(fmt::format("threads must be at most {}, not {}", kMostThreads, options.threads));
+    if (options.thin_features != ThinFeatures::join && options.thin_features != ThinFeatures::refuse)
+        problems.push_back(fmt::format("thin features must be joined or refused, not {}", static_cast<int>(options.thin_features)));
     check_strategy(options, problems);
     const std::vector<std::string> constants = check_paper_constants(options);
     problems.insert(problems.end(), constants.begin(), constants.end());

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <new>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@
 #include "pipeline/certify_result.hpp"
 #include "pipeline/extract_mesh.hpp"
 #include "pipeline/exudation_bounds.hpp"
+#include "pipeline/join_input.hpp"
 #include "pipeline/list_exemptions.hpp"
 #include "pipeline/refusals.hpp"
 #include "pipeline/report_goals.hpp"
@@ -79,6 +81,8 @@ private:
         const ValidPlc valid = fill_valid();
         const CertifyOptions bounds = certificate_bounds(result_, options_, plc_, valid, control_.stop);
         result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
+        // What was joined may have had no room between, such as a body as flat as the rounding: then the result is another domain's.
+        if (joined_ && is_refuted(result_.certificate)) throw *refusal_;
         fail_if_refuted(result_.certificate);
         note_lower_angle(result_);
         try {
@@ -93,7 +97,10 @@ private:
     }
 
     ValidPlc take_in() {
-        ValidPlc valid = timed(Stage::validate, [&] { return validate(plc_, options_, guard_.checkpoint()); });
+        ValidPlc valid = timed(Stage::validate, [&] {
+            return joined_ ? validate(joined_->plc, options_, guard_.checkpoint(), &joined_->source) : validate(plc_, options_, guard_.checkpoint());
+        });
+        if (joined_) name_facets(valid, *joined_);
         require_room(options_.limits, valid.vertices.size(), guard_.stage());
         result_.statistics.coplanar_tolerance = valid.coplanar_tolerance;
         result_.statistics.cells = valid.diagnosis.cells;
@@ -103,6 +110,40 @@ private:
     }
 
     ValidPlc fill_valid() {
+        const std::optional<double> coplanar_tolerance = options_.coplanar_tolerance;
+        try {
+            return fill_stated();
+        } catch (const MeshError& refusal) {
+            // Slits within a coarse rounding may be found as late as when they can't be conformed to.
+            const bool late = refusal.stage() == Stage::conform && plc_.relative_rounding > 0 && !guard_.user_limit_spent() &&
+                              (refusal.code() == ErrorCode::unsupported_acute || refusal.code() == ErrorCode::internal_invariant);
+            if (given_ || !(late || refusal.code() == ErrorCode::bad_input) || options_.thin_features != ThinFeatures::join) throw;
+            options_.coplanar_tolerance = coplanar_tolerance;
+            joined_ = join_input(plc_, options_);
+            if (!joined_) throw;
+            refusal_ = refusal;
+            return fill_joined(refusal);
+        }
+    }
+
+    /// What is joined may still be too thin for anything else; then it is the input that is.
+    ValidPlc fill_joined(const MeshError& refusal) {
+        options_.coplanar_tolerance.reset();
+        try {
+            ValidPlc valid = take_in();
+            result_.statistics.joined = joined_->statistics;
+            result_.statistics.notes.push_back(describe(joined_->statistics, plc_));
+            fill(valid);
+            name_vertices(result_, *joined_, plc_);
+            return valid;
+        } catch (const MeshError& e) {
+            const bool refused = e.code() == ErrorCode::bad_input || e.code() == ErrorCode::unsupported_acute || e.code() == ErrorCode::budget_exhausted;
+            if (refused && !guard_.user_limit_spent()) throw refusal;
+            throw;
+        }
+    }
+
+    ValidPlc fill_stated() {
         ValidPlc valid = take_in();
         try {
             fill(valid);
@@ -207,6 +248,8 @@ private:
     const Plc& plc_;
     const TetMesh* given_;
     MeshOptions options_;
+    std::optional<JoinedPlc> joined_;  ///< what is meshed in place of plc_, if that is too thin
+    std::optional<MeshError> refusal_;  ///< why it had to be joined
     const RunControl& control_;
     RunGuard guard_;
     Workers workers_;

@@ -32,6 +32,9 @@ void require_room(const Limits& limits, std::size_t vertices, Stage stage);
 /// @param expected  vertices. @throws MeshError{mesh_too_large}
 void refuse_hopeless(const Limits& limits, double expected);
 
+/// Whether a claim about anything but goals is.
+[[nodiscard]] bool is_refuted(const Certificate& certificate);
+
 /// Delaunay, conforming and Gabriel hold or the run fails; shape and size are asked and achieved instead.
 /// @throws MeshError{internal_invariant}
 void fail_if_refuted(const Certificate& certificate);

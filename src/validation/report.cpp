@@ -16,6 +16,8 @@ std::string with_line(const char* kind, std::uint64_t number, const std::vector<
     return fmt::format("{} {}", kind, number);
 }
 
+std::size_t of_source(const std::vector<std::uint32_t>* numbers, std::size_t i) { return numbers && i < numbers->size() ? (*numbers)[i] : i; }
+
 }  // namespace
 
 void Report::add(DefectKind kind, Severity severity, std::vector<ElementRef> elements, std::string message, double value,
@@ -25,21 +27,23 @@ void Report::add(DefectKind kind, Severity severity, std::vector<ElementRef> ele
 }
 
 ElementRef Report::vertex(std::size_t input_vertex) const {
-    ElementRef ref{EntityKind::vertex, input_vertex + plc_.first_number, std::nullopt};
+    ElementRef ref{EntityKind::vertex, of_source(source_ ? &source_->vertex : nullptr, input_vertex) + plc_.first_number, std::nullopt};
     if (input_vertex < plc_.vertices.size()) ref.where = plc_.vertices[input_vertex];
     return ref;
 }
 
 ElementRef Report::facet(std::size_t input_facet, std::optional<Vec3> where) const {
-    return {EntityKind::facet, input_facet + plc_.first_number, where};
+    return {EntityKind::facet, of_source(source_ ? &source_->facet : nullptr, input_facet) + plc_.first_number, where};
 }
 
 std::string Report::name_vertex(std::size_t input_vertex) const {
-    return with_line("vertex", input_vertex + plc_.first_number, plc_.vertex_lines, input_vertex);
+    const std::size_t number = of_source(source_ ? &source_->vertex : nullptr, input_vertex);
+    return with_line(number == input_vertex ? "vertex" : "a vertex made near vertex", number + plc_.first_number, plc_.vertex_lines, number);
 }
 
 std::string Report::name_facet(std::size_t input_facet) const {
-    return with_line("facet", input_facet + plc_.first_number, plc_.facet_lines, input_facet);
+    const std::size_t number = of_source(source_ ? &source_->facet : nullptr, input_facet);
+    return with_line("facet", number + plc_.first_number, plc_.facet_lines, number);
 }
 
 std::size_t Report::count(DefectKind kind, Severity severity) const {

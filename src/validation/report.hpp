@@ -12,9 +12,15 @@
 
 namespace wellmesh {
 
+/// Which entities of the source those of a complex that was derived from it stand for.
+struct SourceNumbers {
+    std::vector<std::uint32_t> vertex;  ///< for each vertex; those after the source's own stand near the one given
+    std::vector<std::uint32_t> facet;   ///< for each facet
+};
+
 class Report {
 public:
-    explicit Report(const Plc& plc) : plc_(plc) {}
+    explicit Report(const Plc& plc, const SourceNumbers* source = nullptr) : plc_(plc), source_(source) {}
 
     void add(DefectKind kind, Severity severity, std::vector<ElementRef> elements, std::string message, double value = 0,
              std::vector<Vec3> points = {});
@@ -36,6 +42,7 @@ public:
 
 private:
     const Plc& plc_;
+    const SourceNumbers* source_;
     std::vector<Defect> defects_;
     std::size_t errors_ = 0;
 };

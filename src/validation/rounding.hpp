@@ -32,6 +32,8 @@ struct Rounding {
     [[nodiscard]] double on_edge() const { return ulps(kUlps) + source(); }
     /// Distance that doubles cannot tell from contact: the rounding of one computed vertex, without any slack.
     [[nodiscard]] double contact() const { return ulps(4); }
+    /// Distance that may be nothing but rounding, of the source or of a computed vertex: both of two vertices that were one may be off.
+    [[nodiscard]] double closing() const { return contact() + 2 * override_with.value_or(source()); }
 };
 
 }  // namespace wellmesh

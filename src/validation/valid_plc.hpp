@@ -13,6 +13,8 @@
 
 namespace wellmesh {
 
+struct SourceNumbers;
+
 /// Input 1-cell between two vertices, with no vertex in its interior.
 struct ValidSegment {
     std::array<VertexId, 2> ends{};
@@ -72,6 +74,7 @@ private:
 
 /// @throws MeshError{bad_input | coordinate_range} whose message lists every error found.
 /// @param checkpoint  passed between the checks and, of those that may take long, between pieces.
-[[nodiscard]] ValidPlc validate(const Plc& plc, const MeshOptions& options = {}, const Checkpoint& checkpoint = {});
+/// @param source  what the diagnosis calls the entities of `plc`; null: by their own numbers. source_vertex and source_facet are numbers of `plc` all the same.
+[[nodiscard]] ValidPlc validate(const Plc& plc, const MeshOptions& options = {}, const Checkpoint& checkpoint = {}, const SourceNumbers* source = nullptr);
 
 }  // namespace wellmesh

@@ -24,7 +24,8 @@ namespace wellmesh {
 
 /// The only maker of ValidPlc.
 struct ValidPlcBuilder {
-    ValidPlcBuilder(const Plc& stated, const MeshOptions& options, const Checkpoint& stop = {}) : plc(stated), checkpoint(stop), report(stated) {
+    ValidPlcBuilder(const Plc& stated, const MeshOptions& options, const Checkpoint& stop = {}, const SourceNumbers* source = nullptr)
+        : plc(stated), checkpoint(stop), report(stated, source) {
         rounding.relative = std::max(0.0, stated.relative_rounding);
         rounding.override_with = options.coplanar_tolerance;
     }
@@ -319,8 +320,8 @@ void ValidPlcBuilder::summarise() {
     d.coplanar_tolerance = out.coplanar_tolerance;
 }
 
-ValidPlc validate(const Plc& plc, const MeshOptions& options, const Checkpoint& checkpoint) {
-    ValidPlcBuilder builder(plc, options, checkpoint);
+ValidPlc validate(const Plc& plc, const MeshOptions& options, const Checkpoint& checkpoint, const SourceNumbers* source) {
+    ValidPlcBuilder builder(plc, options, checkpoint, source);
     builder.run();
     builder.summarise();
     throw_if_invalid(builder.out.diagnosis, plc.source_name);

@@ -81,7 +81,7 @@ TEST(usage, values_out_of_range_are_refused_with_the_range) {
         {{"--size", "1e400"}, "above 0"}, {{"--size", "three"}, "--size"}, {{"--max-volume", "nan"}, "above 0"}, {{"--max-volume", "-2"}, "above 0"},
         {{"--max-radius-edge", "0.6"}, "0.6124"}, {{"--max-radius-edge", "inf"}, "0.6124"}, {{"--max-radius-edge", "nan"}, "0.6124"},
         {{"--min-dihedral", "-1"}, "70.52"}, {{"--min-dihedral", "71"}, "70.52"}, {{"--min-dihedral", "nan"}, "70.52"},
-        {{"--coplanar-tolerance", "-1e-9"}, "at least 0"}, {{"--coplanar-tolerance", "nan"}, "at least 0"},
+        {{"--thin-features", "perhaps"}, "neither join nor refuse"}, {{"--coplanar-tolerance", "-1e-9"}, "at least 0"}, {{"--coplanar-tolerance", "nan"}, "at least 0"},
         {{"--max-vertices", "3"}, "at least 4"}, {{"--max-vertices", "-5"}, "whole number"}, {{"--max-vertices", "1e3"}, "whole number"},
         {{"--min-dihedral", ""}, "must not be empty"}, {{"--size", ""}, "must not be empty"},
         {{"--seed", "-1"}, "whole number"}, {{"--seed", "18446744073709551616"}, "whole number"}, {{"--seed", ""}, "whole number"},

@@ -175,6 +175,7 @@ TEST(Limits, WrongOptionsAreAllNamed) {
     for (const double x : {nan, infinity, -1.0}) wrong([&](MeshOptions& o) { o.coplanar_tolerance = x; });
     for (const std::uint64_t n : {0U, 1U, 3U}) wrong([&](MeshOptions& o) { o.limits.max_vertices = n; });
     for (const int ms : {0, -5}) wrong([&](MeshOptions& o) { o.limits.time = std::chrono::milliseconds(ms); });
+    wrong([&](MeshOptions& o) { o.thin_features = static_cast<ThinFeatures>(7); });
     MeshOptions all;
     all.quality = {0, -1};
     all.size = {-1, -1};
