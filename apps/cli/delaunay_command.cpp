@@ -39,11 +39,13 @@ int run(const DelaunayCommand& arguments, Interrupt& interrupt) {
     const DelaunayResult result = triangulate_points(points, arguments.threads);
     const double delaunay_seconds = triangulating.seconds();
 
+    WriteOptions write = arguments.write;
+    write.threads = arguments.threads;
     const Interrupt::Cooperative cooperative(interrupt);
     const Stopwatch writing;
     Json files = Json::array();
     for (const std::string& output : arguments.outputs)
-        for (const auto& file : write_mesh(result.mesh, output, arguments.write)) files.push_back(file.string());
+        for (const auto& file : write_mesh(result.mesh, output, write)) files.push_back(file.string());
 
     Json json = json_header("delaunay", arguments.points);
     json["read_seconds"] = read_seconds;

@@ -14,6 +14,7 @@ thread_local bool at_work = false;
 
 Workers::Workers(unsigned threads) {
     if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+    team_.reserve(threads - 1);  // now, while there is no thread that a failure would leave behind
     try {
         for (unsigned i = 1; i < threads; ++i) team_.emplace_back([this] { stand_by(); });
     } catch (const std::system_error&) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 
 #include "delaunay/triangulation.hpp"
@@ -265,11 +266,12 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
 
 /// Of points at one place the first in number is to be the vertex, whichever came first.
 void Triangulation::prefer_first_duplicates(std::size_t from) {
+    std::unordered_map<VertexId, VertexId> took_over;  // from vertices that have had to go: always straight to the one that is there now
     std::vector<TetId> star;
     for (std::size_t i = from; i < duplicates_.size(); ++i) {
         Duplicate& d = duplicates_[i];
-        for (std::size_t k = from; k < i; ++k)
-            if (duplicates_[k].vertex == d.inserted) d.inserted = duplicates_[k].inserted;  // it has had to go since
+        const VertexId was = d.inserted;
+        if (const auto it = took_over.find(was); it != took_over.end()) d.inserted = it->second;
         if (d.inserted < d.vertex) continue;
         find_star(d.inserted, star);
         for (const TetId t : star) {
@@ -278,6 +280,7 @@ void Triangulation::prefer_first_duplicates(std::size_t from) {
             tets_.set_corners(t, c);
         }
         vertices_[d.vertex.index()].tet = std::exchange(vertices_[d.inserted.index()].tet, TetId{});
+        took_over[was] = took_over[d.inserted] = d.vertex;
         std::swap(d.vertex, d.inserted);
     }
 }

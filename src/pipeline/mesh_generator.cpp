@@ -46,7 +46,9 @@ class Generator {
 public:
     /// @param given  the mesh to start from; null: from the input's vertices alone.
     Generator(const Plc& plc, const TetMesh* given, const MeshOptions& options, const RunControl& control)
-        : plc_(plc), given_(given), options_(with_names_resolved(options, plc)), control_(control), guard_(options.limits, control), workers_(options.threads) {}
+        : plc_(plc), given_(given), options_(with_names_resolved(options, plc)), control_(control), guard_(options.limits, control),
+          // Bulk insertion asks for its memory in large pieces, which a limit would not see coming.
+          workers_(options.limits.memory_bytes ? 1 : options.threads) {}
 
     MeshResult run_within_memory() {
         try {
