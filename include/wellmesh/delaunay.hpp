@@ -12,7 +12,7 @@ namespace wellmesh {
 
 struct DelaunayResult {
     TetMesh mesh;  ///< vertices: `points` in their order, duplicates included (used by no tetrahedron); every tetrahedron in region 1
-    std::uint64_t duplicates = 0;  ///< points equal to another one; the one that is a vertex does not depend on the number of threads
+    std::uint64_t duplicates = 0;  ///< points equal to another one. Which of them is the vertex depends on the points alone; not always the first of the input
 };
 
 /// The Delaunay triangulation of `points`; cospherical ties are broken by lexicographic order, so it does not depend on their order.

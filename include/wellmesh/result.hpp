@@ -70,7 +70,7 @@ struct MeshStatistics {
     std::uint64_t moved_vertices = 0, removed_vertices = 0;
     std::uint64_t weighted_vertices = 0;      ///< with a weight above 0: then the mesh is weighted Delaunay
     std::uint64_t guarded_insertions = 0;     ///< refused: would have made an edge below the bound of Theorem 4.2
-    std::uint64_t exact_predicate_calls = 0;  ///< decided by expansion arithmetic
+    std::uint64_t exact_predicate_calls = 0;  ///< decided by expansion arithmetic on the calling thread: depends on how many there are
     double coplanar_tolerance = 0;            ///< the largest local tolerance that was used, input units
     /// What the certificate allowed because the input's own rounding demands it: distance of a subface from its facet, relative to the
     /// diagonal, and bend between two subfaces of one facet. A checker of rounded input needs the same two numbers.

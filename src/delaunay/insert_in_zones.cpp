@@ -143,7 +143,7 @@ void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId s
     }
 }
 
-/// The same with the whole triangulation for a zone.
+/// The same with the whole triangulation for a zone. @return what was refused for whatever reason, and what was not begun
 std::vector<std::uint32_t> Triangulation::insert_one_by_one(std::span<const std::uint32_t> order, BulkObserver* observer) {
     std::vector<std::uint32_t> left;
     Cavity cavity;

@@ -7,7 +7,7 @@
 // one vertex at infinity. Cospherical ties are broken symbolically in lexicographic order of coordinates [Devillers03], so the
 // triangulation is a function of the point set alone, cavities are star-shaped, no tetrahedron is flat, and any vertex can be removed.
 //
-// Not thread-safe, not even for reading: searches use scratch marks.
+// Not thread-safe, not even for reading: searches use scratch marks. Bulk insertion shares its work out itself, to views that touch nothing in common.
 #pragma once
 
 #include <algorithm>
@@ -109,7 +109,7 @@ public:
     /// @return false if all points are coplanar; then nothing was triangulated. Duplicates: see `duplicate_count`.
     bool insert_all(std::span<const Vec3> points, const Checkpoint& checkpoint = {});
     /// The same, but vertex i is points[order[i]]: with biased_spatial_order(points) neighbours in space are neighbours in memory. The ids of tetrahedra depend
-    /// on the number of workers; canonical_order() does not.
+    /// on the number of workers; visit_in_canonical_order() and renumber() do not.
     bool insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order, Workers& workers);
 
     // --- vertices
