@@ -4,8 +4,8 @@
 
     benchmarks/instructions.py [--program build/dev/bin/wellmesh] [--update] [--tolerance 5]
 
-Exit status 1 if a count is above the committed one by more than the tolerance, or a workload can't be run; 0 otherwise, also where valgrind isn't there or the program
-was made by another compiler than the file's: then nothing can be compared, and that is said.
+Exit status 1 if a count is above the committed one by more than the tolerance, or a workload can't be run; 0 otherwise, also where valgrind isn't there, the program
+was made by another compiler than the file's, or this processor lacks the vectors that the file's had: then nothing can be compared, and that is said.
 """
 import argparse
 import json
@@ -46,6 +46,15 @@ def compiler_of(program):
     return ", ".join(name.decode() for name in found) or "unknown"
 
 
+def vectors():
+    """The program takes other paths on processors without these."""
+    try:
+        with open("/proc/cpuinfo") as stream:
+            return "avx2" if re.search(r"^flags\s*:.*\bavx2\b", stream.read(), re.MULTILINE) else "none"
+    except OSError:
+        return "unknown"
+
+
 def write_inputs(folder):
     generator = random.Random(1)
     with open(os.path.join(folder, "points.node"), "w") as out:
@@ -61,6 +70,8 @@ def count(program, arguments, function, folder):
     words = [os.path.join(folder, a) if a.endswith((".node", ".poly")) else a for a in arguments]
     if words[0] == "mesh":
         words += ["-o", os.path.join(folder, "out.mesh"), "--quiet"]
+    # What is switched on at a call is counted in the calling thread only: with more of them the count would depend on the machine's cores.
+    words += ["--threads", "1"]
     result = run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", f"--toggle-collect={function}", program, *words], 300)
     found = re.search(r"Collected : ([0-9]+)", result.errors)
     if result.code != 0 or not found:
@@ -84,7 +95,7 @@ def main():
     if not shutil.which("valgrind"):
         print("instructions.py: SKIPPED: there is no valgrind (Debian: apt install valgrind)")
         return 0
-    compiler, table = compiler_of(arguments.program), {"compiler": None, "millions": {}}
+    compiler, table = f"{compiler_of(arguments.program)}, vectors: {vectors()}", {"compiler": None, "millions": {}}
     if os.path.exists(arguments.table):
         with open(arguments.table) as stream:
             table = json.load(stream)
