@@ -55,6 +55,9 @@ ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint
 void ConformingMesh::fit_arrays() {
     const std::size_t slots = tri_.tets().slots();
     if (cell_.size() >= slots) return;
+    // As much room as the tetrahedra have: growing on their own they would be there twice at other times, too.
+    cell_.reserve(tri_.tets().capacity());
+    record_.reserve(tri_.tets().capacity());
     cell_.resize(slots, CellId{0});
     record_.resize(slots, 0);
 }

@@ -225,6 +225,7 @@ private:
             });
         if (!certified && only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
         std::vector<TetId> order;
+        mesh.triangulation().release_scratch();  // the mesh is there twice now
         result_.mesh = extract_mesh(mesh, order);
         result_.mesh.names = plc_.names;
         result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number);

@@ -76,7 +76,7 @@ bool LatticeSeeder::split_boundary(double coarseness) {
         faces.clear();
         for (std::size_t i = 0; i < tets.slots(); ++i) {
             const TetId t{i};
-            if (!tets.is_finite(t) || !mesh_.has_labels(t)) continue;
+            if (!mesh_.has_labels(t) || !tets.is_finite(t)) continue;  // nearly all have none, and few of these are in the cache
             const double bound = sizes_.varies() ? 0 : coarseness * radius_bound(t, {});
             if (bound == kInfinity) continue;
             const auto is_beyond = [&](double radius, const Vec3& p) { return radius > (sizes_.varies() ? coarseness * radius_bound(t, p) : bound); };
@@ -119,7 +119,7 @@ std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
     std::vector<Face> out;
     for (std::size_t i = 0; i < tets.slots(); ++i) {
         const TetId t{i};
-        if (!tets.is_finite(t) || !mesh_.has_labels(t)) continue;
+        if (!mesh_.has_labels(t) || !tets.is_finite(t)) continue;
         if (!mesh_.in_domain(t)) continue;
         for (unsigned f = 0; f < 4; ++f) {
             if (!mesh_.labels(t).facets[f].valid()) continue;
@@ -215,6 +215,7 @@ std::uint64_t LatticeSeeder::seed() {
         // As many as the coarse mesh would have.
         const auto share = static_cast<std::size_t>(static_cast<double>(seeds.size()) / (coarseness * coarseness * coarseness));
         const bool goes_on = insert_seeds({seeds.data(), share});
+        if (coarseness == 1) seeds = {};  // memory is short while tetrahedra are numbered
         mesh_.renumber_tets(workers_);  // what comes next goes by ids
         if (!goes_on) break;
     }

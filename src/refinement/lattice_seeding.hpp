@@ -54,6 +54,7 @@ private:
     };
     [[nodiscard]] std::vector<Seed> seeds_of(const std::vector<LatticePoint>& lattice);
     bool insert_seeds(std::span<Seed> seeds);
+    [[nodiscard]] std::vector<char> find_deep(std::span<const Seed> seeds) const;
     bool insert_deep(std::span<Seed> seeds);
     Outcome insert(const Vec3& p, TetId& near, VertexId known = {});
     [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;
