@@ -56,10 +56,12 @@ void ConformingMesh::fit_arrays() {
     const std::size_t slots = tri_.tets().slots();
     if (cell_.size() >= slots) return;
     // As much room as the tetrahedra have: growing on their own they would be there twice at other times, too.
-    cell_.reserve(tri_.tets().capacity());
-    record_.reserve(tri_.tets().capacity());
-    cell_.resize(slots, CellId{0});
-    record_.resize(slots, 0);
+    const std::size_t room = tri_.tets().capacity();
+    cell_.reserve(room);
+    record_.reserve(room);
+    const std::size_t ahead = std::min(room, slots + slots / 64 + 64);  // this is asked after every insertion
+    cell_.resize(ahead, CellId{0});
+    record_.resize(ahead, 0);
 }
 
 TetLabels& ConformingMesh::labels_for_writing(TetId t) {

@@ -149,6 +149,7 @@ void ConformingMesh::insert_known(VertexId v, const Cavity& cavity, const Placem
 }
 
 void ConformingMesh::renumber_tets(Workers& workers) {
+    tri_.release_scratch();  // it would be for tetrahedra that are no more
     const Triangulation::Renumbering renumbering = tri_.renumber(workers);
     const std::vector<TetId>& old_of = renumbering.old_of;
     const auto take_along = [&](auto& values) {

@@ -105,7 +105,10 @@ TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order) {
     out.tet_regions.reserve(count);
     std::vector<ListedFace> faces;
     std::vector<ListedEdge> edges;
-    for (const TetId t : order) {
+    constexpr std::size_t kAhead = 16;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + kAhead < count) tets.prefetch(order[i + kAhead]);
+        const TetId t = order[i];
         const auto& c = tets.corners(t);
         out.tets.push_back({number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]});
         out.tet_regions.push_back(plc.cells[mesh.cell(t).index()].region);
