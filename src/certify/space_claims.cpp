@@ -51,6 +51,7 @@ struct HullFace {
     Box3 box;
     Vec3 corner, normal;  ///< rounded once a difference, a product and a sum, as orient3d's minors are
     std::uint32_t triangle = 0;
+    std::uint32_t plane = 0;  ///< the same only for faces that lie in one plane exactly, with the mesh on the same side
 
     HullFace(const SuspectMesh& mesh, const ConstraintTriangle& t, std::uint32_t number) : corner(mesh.point(t.v[0])), triangle(number) {
         const Corners corners{mesh.point(t.v[0]), mesh.point(t.v[1]), mesh.point(t.v[2])};
@@ -67,17 +68,28 @@ bool spans_plane_inside(const SuspectMesh& mesh, const HullFace& plane, const Co
     std::array<double, 4> values{};
     for (std::size_t i = 0; i < 4; ++i) values[i] = dot(plane.normal, mesh.point(tet[i]) - plane.corner);
     int inner = 0, outer = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const double inwards = inner_sign == Sign::positive ? values[i] : -values[i];
+    for (double& inwards : values) {
+        if (inner_sign != Sign::positive) inwards = -inwards;
         inner += inwards > bound;
         outer += inwards < -bound;
-        if (std::abs(inwards) > bound) continue;
+    }
+    for (std::size_t i = 0; inner + outer < 4 && i < 4; ++i) {
+        if (std::abs(values[i]) > bound) continue;
         const std::uint32_t v = tet[i];
         if (v == face.v[0] || v == face.v[1] || v == face.v[2]) continue;
         const Sign s = mesh.predicates().orient3d(mesh.point(face.v[0]), mesh.point(face.v[1]), mesh.point(face.v[2]), mesh.point(v));
         if (s != Sign::zero) ++(s == inner_sign ? inner : outer);
     }
     return inner > 0 && (outer > 0 || inner == 1);
+}
+
+bool in_one_plane(const SuspectMesh& mesh, const ConstraintTriangle& a, const ConstraintTriangle& b) {
+    const auto side = [&](std::uint32_t v) { return mesh.predicates().orient3d(mesh.point(a.v[0]), mesh.point(a.v[1]), mesh.point(a.v[2]), mesh.point(v)); };
+    if (std::any_of(b.v.begin(), b.v.end(), [&](std::uint32_t v) { return std::find(a.v.begin(), a.v.end(), v) == a.v.end() && side(v) != Sign::zero; })) return false;
+    // A positive tetrahedron is on the inner side.
+    const Tet& inside = mesh.mesh().tets[tet_of_hull_face(b)];
+    const auto apex = std::find_if(inside.begin(), inside.end(), [&](std::uint32_t v) { return std::find(b.v.begin(), b.v.end(), v) == b.v.end(); });
+    return apex != inside.end() && side(*apex) == (a.tets[0] == kNone ? Sign::negative : Sign::positive);
 }
 
 /// Pairs of a tetrahedron and a hull face whose box it meets, per element, that are looked at before it is worth trying another way: each costs a few
@@ -90,6 +102,7 @@ enum class InsideHull : std::uint8_t { clear, not_clear, too_many };
 class NearFaces {
 public:
     static constexpr std::size_t kTets = 32;  ///< listed together
+    static constexpr std::size_t kFew = 4;    ///< of these, and looked at together
 
     NearFaces(const BoxTree& tree, const std::vector<HullFace>& faces) : tree_(tree), faces_(faces) {}
 
@@ -103,24 +116,35 @@ public:
             return found_.size() > kMost;
         });
     }
-    /// Calls visit(face) for those whose box meets `box`, until it returns true. @return whether it did. @pre `box` is inside the one that was moved to.
-    template <class Visit>
-    bool any_meeting(const Box3& box, Visit&& visit) const {
-        if (!few_) return tree_.any_meeting(box, [&](std::uint32_t i) { return visit(faces_[i]); });
-        if (found_.empty() || !box_.meets(box)) return false;
-        for (const HullFace& f : found_) {
-            const bool meets = (f.box.low.x <= box.high.x) & (box.low.x <= f.box.high.x) & (f.box.low.y <= box.high.y) & (box.low.y <= f.box.high.y) &
-                               (f.box.low.z <= box.high.z) & (box.low.z <= f.box.high.z);
-            if (meets && visit(f)) return true;
-        }
-        return false;
+    /// @pre `around` is inside the one that was moved to.
+    void narrow_to(const Box3& around) {
+        if (!few_) return;
+        nearest_.resize(kMost + 1);  // to be written to without a branch
+        std::size_t n = 0;
+        if (!found_.empty() && box_.meets(around))
+            for (std::size_t i = 0; i < found_.size(); ++i) {
+                nearest_[n] = static_cast<std::uint16_t>(i);
+                n += meet(found_[i].box, around);
+            }
+        nearest_.resize(n);
+    }
+    /// Calls visit(face) for those whose box meets `box`, but those that `skip` says yes to, until it returns true. @return whether it did.
+    /// @pre `box` is inside the one that was narrowed to.
+    template <class Skip, class Visit>
+    bool any_meeting(const Box3& box, Skip&& skip, Visit&& visit) const {
+        if (!few_) return tree_.any_meeting(box, [&](std::uint32_t i) { return !skip(faces_[i]) && visit(faces_[i]); });
+        return std::any_of(nearest_.begin(), nearest_.end(), [&](std::uint16_t i) { return !skip(found_[i]) && meet(found_[i].box, box) && visit(found_[i]); });
     }
 
 private:
+    static bool meet(const Box3& a, const Box3& b) {  // no branches: whether they do can't be foreseen
+        return (a.low.x <= b.high.x) & (b.low.x <= a.high.x) & (a.low.y <= b.high.y) & (b.low.y <= a.high.y) & (a.low.z <= b.high.z) & (b.low.z <= a.high.z);
+    }
     static constexpr std::size_t kMost = 256;
     const BoxTree& tree_;
     const std::vector<HullFace>& faces_;
     std::vector<HullFace> found_;
+    std::vector<std::uint16_t> nearest_;  // of those
     Box3 box_{};
     bool few_ = true;
 };
@@ -132,6 +156,9 @@ InsideHull look_inside_hull(const SuspectMesh& mesh, const std::vector<Constrain
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         if (!triangles[i].on_hull) continue;
         hull.emplace_back(mesh, triangles[i], static_cast<std::uint32_t>(i));
+        // Neighbours in the list are neighbours in space.
+        const std::size_t n = hull.size();
+        hull.back().plane = n > 1 && in_one_plane(mesh, triangles[hull[n - 2].triangle], triangles[i]) ? hull[n - 2].plane : static_cast<std::uint32_t>(n - 1);
         boxes.push_back(hull.back().box);
     }
     const std::size_t most_pairs = kPairsPerElement * (mesh.tet_count() + hull.size());
@@ -152,14 +179,26 @@ InsideHull look_inside_hull(const SuspectMesh& mesh, const std::vector<Constrain
             near.move_to(around);
             std::size_t met = 0;
             for (std::size_t i = 0; i < n; ++i) {
+                if (i % NearFaces::kFew == 0) {
+                    Box3 few = box[i];
+                    for (std::size_t k = i + 1; k < std::min(n, i + NearFaces::kFew); ++k) few.grow(box[k]);
+                    near.narrow_to(few);
+                }
                 const std::size_t t = first + i;
                 const Tet& tet = mesh.mesh().tets[t];
-                const bool found = near.any_meeting(box[i], [&](const HullFace& plane) {
-                    if (++met > most_pairs) return true;
-                    const ConstraintTriangle& face = triangles[plane.triangle];
-                    const std::uint32_t owner = tet_of_hull_face(face);
-                    return owner != t && spans_plane_inside(mesh, plane, face, tet) && overlap(mesh, t, owner);
-                });
+                std::uint32_t plane = kNone;  // that was looked at last
+                bool spans = false;
+                const bool found = near.any_meeting(
+                    box[i], [&](const HullFace& f) { return f.plane == plane && !spans; },
+                    [&](const HullFace& f) {
+                        if (++met > most_pairs) return true;
+                        const ConstraintTriangle& face = triangles[f.triangle];
+                        const std::uint32_t owner = tet_of_hull_face(face);
+                        if (owner == t) return false;
+                        if (f.plane != plane) spans = spans_plane_inside(mesh, f, face, tet);
+                        plane = f.plane;
+                        return spans && overlap(mesh, t, owner);
+                    });
                 if (found && met <= most_pairs) overlapping = true;
             }
             if (met > 0) pairs += met;

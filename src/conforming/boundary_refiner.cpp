@@ -2,6 +2,8 @@
 #include "conforming/boundary_refiner.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,6 +17,8 @@ namespace {
 
 /// Pieces of a segment never get shorter than this part of it unless splits chase each other about an acute angle.
 constexpr double kShortestPiece = 1e-9;
+/// Of candidates for a point: none has been looked at.
+constexpr unsigned kNoneYet = std::numeric_limits<unsigned>::max();
 
 }  // namespace
 
@@ -188,10 +192,14 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const 
     const double radius = distance(a, b) / 2;
     Triangulation& tri = mesh_.triangulation();
     const double jitter = rules.jitter * (2 * unit_double(mix64(key, 0)) - 1);
+    unsigned at_hand = kNoneYet;  // the candidate whose cavity was found last: judging it leaves that as it is
     const auto found = [&](unsigned k) {
+        if (std::exchange(at_hand, k) == k) return true;
         const double at = k == 0 ? jitter : std::min(rules.delta, rules.reach / radius) * picking_point(1, key, k).x;
         const Vec3 p = project_to_segment(mesh_.plc(), s.segment, middle + (at / 2) * (b - a));
-        return p != a && p != b && !acute_.in_ball_of_segment(s.segment, p) && tri.find_conflict_cavity(p, tri.tet_of(s.a), cavity_);
+        if (p != a && p != b && !acute_.in_ball_of_segment(s.segment, p) && tri.find_conflict_cavity(p, tri.tet_of(s.a), cavity_)) return true;
+        at_hand = kNoneYet;
+        return false;
     };
     unsigned chosen = 0;
     bool sliver_free = !judge;
@@ -252,11 +260,15 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
             acute_.halve_ball(v);
         }
     }
+    unsigned at_hand = kNoneYet;
     const auto found = [&](unsigned k) {
+        if (std::exchange(at_hand, k) == k) return true;
         const Vec3 unit = picking_point(2, key, k == 0 ? 1 : k);
         const double r = k == 0 ? rules.jitter * radius : rules.region(radius);
         const Vec3 p = project_to_facet(facet, centre + (r * unit.x) * facet.axis_u + (r * unit.y) * facet.axis_v);
-        return tri.find_conflict_cavity(p, face.tet(), cavity_) && !(k > 0 && ball_around(cavity_).valid());
+        if (tri.find_conflict_cavity(p, face.tet(), cavity_) && !(k > 0 && ball_around(cavity_).valid())) return true;
+        at_hand = kNoneYet;
+        return false;
     };
     // The centre decides whether a subsegment has to be split instead.
     if (!found(0)) return SplitOutcome::gone;

@@ -55,8 +55,13 @@ ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint
 void ConformingMesh::fit_arrays() {
     const std::size_t slots = tri_.tets().slots();
     if (cell_.size() >= slots) return;
-    cell_.resize(slots, CellId{0});
-    record_.resize(slots, 0);
+    // As much room as the tetrahedra have: growing on their own they would be there twice at other times, too.
+    const std::size_t room = tri_.tets().capacity();
+    cell_.reserve(room);
+    record_.reserve(room);
+    const std::size_t ahead = std::min(room, slots + slots / 64 + 64);  // this is asked after every insertion
+    cell_.resize(ahead, CellId{0});
+    record_.resize(ahead, 0);
 }
 
 TetLabels& ConformingMesh::labels_for_writing(TetId t) {

@@ -245,6 +245,8 @@ private:
     std::vector<InteriorFace> interior_;
     std::vector<Subsegment> captured_segments_, interior_segments_;  // of the cavity's boundary; deleted by the insertion
     std::vector<LoopEdge> loop_;
+    std::vector<std::uint64_t> rim_;  // the edges of captured faces, three each, as edge_key() has them; none where there is no loop
+    std::vector<std::size_t> mine_, taken_;
     std::vector<FacetId> carrier_facets_;
     Hole undo_hole_;
     Cavity undo_cavity_;

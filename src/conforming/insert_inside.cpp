@@ -2,6 +2,7 @@
 // Bulk insertion inside cells, and numbering afterwards.
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "conforming/conforming_mesh.hpp"
@@ -50,6 +51,9 @@ public:
             if (mesh_.is_encroached_at(t, cavity.point)) return Answer::never;
         }
         if (is_part_ && records_.size() + dropped < cavity.boundary.size()) return Answer::not_now;
+        captured_.clear();
+        cell_ = mesh_.cell(cavity.tets[0]);
+        if (dropped == 0) return Answer::yes;  // no surface to pass on: one cell, as that of nearly every cavity
         mesh_.capture(cavity, captured_);
         for (const TetId t : cavity.tets) {
             std::uint32_t& r = mesh_.record_[t.index()];
@@ -58,7 +62,14 @@ public:
         return Answer::yes;
     }
     void made(VertexId v, const std::vector<TetId>& tets) override {
-        mesh_.info_[v.index()].carrier_id = captured_[0].cell.value();
+        mesh_.info_[v.index()].carrier_id = cell_.value();
+        if (captured_.empty()) {
+            for (const TetId t : tets) {
+                mesh_.cell_[t.index()] = cell_;
+                mesh_.record_[t.index()] = 0;
+            }
+            return;
+        }
         for (std::size_t i = 0; i < tets.size(); ++i) {
             const TetId t = tets[i];
             const CapturedFace& c = captured_[i];
@@ -94,7 +105,8 @@ private:
     const std::function<bool()>& may_go_on_;
     bool is_part_ = false;
     std::vector<std::uint32_t> records_;
-    std::vector<CapturedFace> captured_;
+    std::vector<CapturedFace> captured_;  // none: no tetrahedron of the cavity has labels
+    CellId cell_{};                       // of its first one
     std::vector<InsideObserver> parts_;
 };
 
@@ -116,6 +128,7 @@ std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<
                                                     const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on) {
     const std::size_t first = tri_.vertex_count();
     tri_.reserve(first + points.size());
+    info_.reserve(first + points.size() + points.size() / 8);
     for (const Vec3& p : points) {
         (void)tri_.add_point(p);
         info_.push_back({.carrier = CarrierKind::region, .reason = reason});
@@ -136,31 +149,32 @@ void ConformingMesh::insert_known(VertexId v, const Cavity& cavity, const Placem
 }
 
 void ConformingMesh::renumber_tets(Workers& workers) {
+    tri_.release_scratch();  // it would be for tetrahedra that are no more
+    const Triangulation::Renumbering renumbering = tri_.renumber(workers);
+    const std::vector<TetId>& old_of = renumbering.old_of;
+    const auto take_along = [&](auto& values) {
+        std::remove_reference_t<decltype(values)> moved;
+        moved.reserve(values.capacity());
+        moved.resize(old_of.size());
+        workers.for_ranges(old_of.size(), std::size_t{1} << 15, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) moved[i] = values[old_of[i].index()];
+        });
+        values = std::move(moved);
+    };
+    take_along(cell_);
+    take_along(record_);
     // Labels stand by corner: they follow their vertices.
-    const TetStore& tets = tri_.tets();
-    std::vector<TetStore::Corners> labelled(records_.size());
-    for (std::size_t i = 0; i < record_.size() && i < tets.slots(); ++i)
-        if (record_[i] != 0 && tets.is_live(TetId{i})) labelled[record_[i]] = tets.corners(TetId{i});
-    const std::vector<TetId> old_of = tri_.renumber(workers);
-    std::vector<CellId> cells(old_of.size());
-    std::vector<std::uint32_t> records(old_of.size());
-    std::vector<TetLabels> ordered(records_.size());
     workers.for_ranges(old_of.size(), std::size_t{1} << 15, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
-            const TetId t{i};
-            cells[i] = cell_[old_of[i].index()];
-            const std::uint32_t r = records[i] = record_[old_of[i].index()];
-            if (r == 0) continue;
-            std::array<std::size_t, 4> slot{};  // by corner: where it was
-            for (unsigned k = 0; k < 4; ++k)
-                slot[k] = static_cast<std::size_t>(std::find(labelled[r].begin(), labelled[r].end(), tets.corner(t, k)) - labelled[r].begin());
-            for (unsigned k = 0; k < 4; ++k) ordered[r].facets[k] = records_[r].facets[slot[k]];
-            for (unsigned e = 0; e < 6; ++e) ordered[r].segments[e] = records_[r].segments[kEdgeOf[slot[kEdgeCorners[e][0]]][slot[kEdgeCorners[e][1]]]];
+            if (record_[i] == 0) continue;
+            TetLabels& labels = records_[record_[i]];
+            const TetLabels before = labels;
+            std::array<unsigned, 4> slot{};  // by corner: where it was
+            for (unsigned k = 0; k < 4; ++k) slot[k] = renumbering.old_corner(TetId{i}, k);
+            for (unsigned k = 0; k < 4; ++k) labels.facets[k] = before.facets[slot[k]];
+            for (unsigned e = 0; e < 6; ++e) labels.segments[e] = before.segments[kEdgeOf[slot[kEdgeCorners[e][0]]][slot[kEdgeCorners[e][1]]]];
         }
     });
-    cell_ = std::move(cells);
-    record_ = std::move(records);
-    records_ = std::move(ordered);
 }
 
 }  // namespace wellmesh

@@ -2,6 +2,7 @@
 // Insertion of a vertex into a labelled mesh: what the new tetrahedra inherit, and how the surface is led through a point on it.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "conforming/conforming_mesh.hpp"
@@ -12,6 +13,9 @@ namespace wellmesh {
 namespace {
 
 bool same_edge(VertexId a, VertexId b, VertexId c, VertexId d) { return (a == c && b == d) || (a == d && b == c); }
+
+/// The same for both directions.
+std::uint64_t edge_key(VertexId a, VertexId b) { return std::uint64_t{std::min(a, b).value()} << 32 | std::max(a, b).value(); }
 
 /// Smallest barycentric coordinate of p in the triangle, both seen along `normal`: how deep inside it lies.
 double depth_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& normal) {
@@ -77,11 +81,12 @@ bool ConformingMesh::is_segment_edge(VertexId a, VertexId b) const {
 
 /// Finds the subfaces of `facet` that the point's star replaces: the ones connected, not across subsegments, to where the point lies.
 void ConformingMesh::replace_subfaces(const Cavity& cavity, const Placement& where, FacetId facet) {
-    std::vector<std::size_t> mine;
+    std::vector<std::size_t>&mine = mine_, &stack = taken_;
+    mine.clear();
+    stack.clear();
     for (std::size_t i = 0; i < interior_.size(); ++i)
         if (interior_[i].facet == facet) mine.push_back(i);
     if (mine.empty()) return;
-    std::vector<std::size_t> stack;
     const auto take = [&](std::size_t i) {
         if (interior_[i].used) return;
         interior_[i].used = true;
@@ -158,14 +163,8 @@ bool ConformingMesh::note_destroyed(const Placement& where) {
     for (const Subsegment& s : interior_segments_)
         if (where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b)) broken_segments_.push_back(s.segment);
     // An edge of the loop that is a destroyed subsegment carries no face of the star: the surface is open there.
-    for (const LoopEdge& e : loop_) {
-        const auto at_edge = [&](const CapturedFace& c) {
-            for (std::size_t k = 0; k < 3; ++k)
-                if (same_edge(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], e.a, e.b)) return true;
-            return false;
-        };
-        if (std::none_of(captured_.begin(), captured_.end(), at_edge)) broken_facets_.push_back(e.facet);
-    }
+    for (const LoopEdge& e : loop_)
+        if (std::find(rim_.begin(), rim_.end(), edge_key(e.a, e.b)) == rim_.end()) broken_facets_.push_back(e.facet);
     return broken_facets_.size() != before;
 }
 
@@ -177,11 +176,15 @@ void ConformingMesh::plan(const Cavity& cavity, const Placement& where) {
         for (std::size_t k = 0; k < 3; ++k)
             if (c.segments[k].valid()) captured_segments_.push_back({c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], c.segments[k]});
     loop_.clear();
+    rim_.clear();
     interior_.clear();
     interior_segments_.clear();
     if (std::none_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId t) { return has_labels(t); })) return;
     collect_interior(cavity, where);
     for (const FacetId f : facets_of(where)) replace_subfaces(cavity, where, f);
+    if (loop_.empty()) return;
+    for (const CapturedFace& c : captured_)
+        for (std::size_t k = 0; k < 3; ++k) rim_.push_back(edge_key(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3]));
 }
 
 bool ConformingMesh::would_break(const Cavity& cavity, const Placement& where) {
@@ -236,7 +239,7 @@ void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& w
             if (c.segments[k].valid() && !(splits && same_edge(a, b, where.a, where.b)))
                 labels_for_writing(t).segments[kEdgeOf[tets.find_corner(t, a)][tets.find_corner(t, b)]] = c.segments[k];
             for (const LoopEdge& e : loop_)
-                if (same_edge(e.a, e.b, a, b)) labels_for_writing(t).facets[tets.find_corner(t, c.corners[k])] = e.facet;
+                if (edge_key(e.a, e.b) == rim_[3 * i + k]) labels_for_writing(t).facets[tets.find_corner(t, c.corners[k])] = e.facet;
         }
         if (splits)
             for (const VertexId end : {where.a, where.b}) {

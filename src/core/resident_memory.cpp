@@ -7,6 +7,10 @@
 
 #include <charconv>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace wellmesh {
 namespace {
 
@@ -35,6 +39,12 @@ std::uint64_t resident_bytes() noexcept {
     return static_cast<std::uint64_t>(usage.ru_maxrss);  // bytes there, KiB elsewhere
 #else
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+#endif
+}
+
+void return_freed_memory() noexcept {
+#ifdef __GLIBC__
+    (void)::malloc_trim(0);
 #endif
 }
 

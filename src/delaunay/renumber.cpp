@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <atomic>
 
 #include "delaunay/canonical_order.hpp"
@@ -10,37 +11,53 @@ namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 15;
 
+/// Of a turn, two bits a corner: the turn back.
+constexpr std::array<std::uint8_t, 256> kTurnBack = [] {
+    std::array<std::uint8_t, 256> back{};
+    for (unsigned turn = 0; turn < back.size(); ++turn)
+        for (unsigned k = 0; k < 4; ++k) back[turn] = static_cast<std::uint8_t>(back[turn] | k << (2 * (turn >> (2 * k) & 3U)));
+    return back;
+}();
+
 }  // namespace
 
-std::vector<TetId> Triangulation::renumber(Workers& workers) {
-    std::vector<TetId> old_of;
+Triangulation::Renumbering Triangulation::renumber(Workers& workers) {
+    Renumbering out;
     std::vector<TetId> new_of(tets_.slots());
-    TetStore renumbered;
+    out.turns.resize(tets_.slots());
     visit_in_canonical_order<true>(
-        tets_, vertices_.size(), workers,
-        [&](std::size_t n) {
-            old_of.resize(n);
-            renumbered.start_anew(n);
-        },
+        tets_, vertices_.size(), workers, [&](std::size_t n) { out.old_of.resize(n); },
         [&](std::size_t place, TetId t, const TetStore::Corners& c) {
-            old_of[place] = t;
+            out.old_of[place] = t;
             new_of[t.index()] = TetId{place};
-            renumbered.set_corners(TetId{place}, c);
+            std::uint8_t turn = 0;
+            for (unsigned k = 0; k < 4; ++k) turn = static_cast<std::uint8_t>(turn | tets_.find_corner(t, c[k]) << (2 * k));
+            out.turns[t.index()] = turn;
         });
-    workers.for_ranges(old_of.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+    // Each where it is, by what is known of its neighbours' new places; then all of them move.
+    workers.for_ranges(tets_.slots(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
-            const TetId t{i}, before = old_of[i];
+            const TetId t{i};
+            if (!tets_.is_live(t)) continue;
+            const TetStore::Corners c = tets_.corners(t);
+            const std::array<TetFace, 4> across = tets_.across_all(t);
+            TetStore::Corners corners;
+            std::array<TetFace, 4> opposite;
             for (unsigned k = 0; k < 4; ++k) {
-                const TetFace beyond = tets_.across(before, tets_.find_corner(before, renumbered.corner(t, k)));
-                const TetId n = new_of[beyond.tet().index()];
-                renumbered.set_across(TetFace{t, k}, TetFace{n, renumbered.find_corner(n, tets_.corner(beyond.tet(), beyond.face()))});
+                const unsigned before = out.turns[i] >> (2 * k) & 3U;
+                const TetFace beyond = across[before];
+                const std::size_t n = beyond.tet().index();
+                const unsigned back = kTurnBack[out.turns[n]];
+                corners[k] = c[before];
+                opposite[k] = TetFace{new_of[n], back >> (2 * beyond.face()) & 3U};
             }
+            tets_.set(t, corners, opposite);
         }
     });
-    tets_ = std::move(renumbered);
+    tets_.reorder(out.old_of, new_of, workers);
     find_homes(workers);
     last_located_ = TetId{};
-    return old_of;
+    return out;
 }
 
 /// Each vertex's tetrahedron: the first finite one of those that it made, or else the first of all.

@@ -7,10 +7,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/ids.hpp"
 #include "core/shared_array.hpp"
+#include "core/workers.hpp"
 
 namespace wellmesh {
 
@@ -80,11 +82,10 @@ public:
     void prefetch(TetId t) const { __builtin_prefetch(tet_.data() + t.index()); }
     void reserve(std::size_t tets) { tet_.reserve(tets); }
     void clear();
-    /// This many slots, all of which are to be set, and none free.
-    void start_anew(std::size_t slots) {
-        clear();
-        tet_.resize_as_is(slots);
-    }
+    [[nodiscard]] std::size_t capacity() const { return tet_.capacity(); }
+    /// Tetrahedron t[i] becomes number i; what is not listed is forgotten, and no slot is free. Adjacencies name the new numbers already.
+    /// @param scratch  one for each slot
+    void reorder(std::span<const TetId> t, std::span<TetId> scratch, Workers& workers);
 
     // --- views, for several workers at once (Triangulation::insert_in_zones)
     /// The same tetrahedra, with `slots` free ones of its own: take_slots() made them. Valid until this store grows.
@@ -103,6 +104,8 @@ private:
         std::array<TetFace, 4> opposite{};
     };
     static_assert(sizeof(Tet) == 32);
+    void reorder_in_place(std::span<const TetId> t, std::span<TetId> place);
+
     SharedArray<Tet> tet_;
     std::vector<TetId> free_;
 };

@@ -156,9 +156,16 @@ public:
     /// ids are not. @param order  vertices, neighbours in space near each other
     /// @return what was refused, or not begun when the observer said stop  @pre four vertices are inserted
     std::vector<std::uint32_t> insert_on(Workers& workers, std::span<const std::uint32_t> order, BulkObserver* observer = nullptr);
+    struct Renumbering {
+        std::vector<TetId> old_of;        ///< for each new id the old one
+        std::vector<std::uint8_t> turns;  ///< by the old id: how its corners were turned
+        /// Where corner k of new tetrahedron t was.
+        [[nodiscard]] unsigned old_corner(TetId t, unsigned k) const { return turns[old_of[t.index()].index()] >> (2 * k) & 3U; }
+    };
     /// Numbers the tetrahedra in canonical order, without gaps, their corners in canonical order, too. Ids from before are void.
-    /// @return for each new id the old one
-    std::vector<TetId> renumber(Workers& workers);
+    Renumbering renumber(Workers& workers);
+    /// Gives back memory that searches and changes need: the next one takes it again.
+    void release_scratch() { mark_.release(); }
 
     /// Triangulates the hole that v would leave. @return false if v can't go (fewer than four affinely independent points would stay) or its star has more than
     /// `most_tets`.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/resident_memory.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/spatial_order.hpp"
 
@@ -53,6 +54,8 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, InOutput&& in_outpu
             for (const VertexId v : tets.corners(TetId{i})) number[v.index()] = 0;
     std::vector<VertexId> order, steiner;
     std::vector<Vec3> steiner_points;
+    for (auto* list : {&order, &steiner}) list->reserve(number.size());
+    steiner_points.reserve(number.size());
     for (std::size_t i = 0; i < number.size(); ++i) {
         const VertexId v{i};
         if (number[i] == kUnused) continue;
@@ -100,12 +103,16 @@ TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order) {
     std::vector<std::uint32_t> number(mesh.vertex_slots(), kUnused);
     const auto in_output = [&](TetId t) { return tets.is_finite(t) && mesh.in_domain(t); };
     order = number_output(mesh, in_output, number, out);
+    return_freed_memory();
     const std::size_t count = order.size();
     out.tets.reserve(count);
     out.tet_regions.reserve(count);
     std::vector<ListedFace> faces;
     std::vector<ListedEdge> edges;
-    for (const TetId t : order) {
+    constexpr std::size_t kAhead = 16;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + kAhead < count) tets.prefetch(order[i + kAhead]);
+        const TetId t = order[i];
         const auto& c = tets.corners(t);
         out.tets.push_back({number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]});
         out.tet_regions.push_back(plc.cells[mesh.cell(t).index()].region);
@@ -113,6 +120,9 @@ TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order) {
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    out.subfaces.reserve(faces.size());
+    out.subface_facets.reserve(faces.size());
+    out.subface_markers.reserve(faces.size());
     for (const ListedFace& f : faces) {
         out.subfaces.push_back(f.corners);
         out.subface_facets.push_back(static_cast<std::int32_t>(plc.facets[f.facet.index()].source_facet) + 1);

@@ -11,6 +11,7 @@
 #include "adoption/adopt.hpp"
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
+#include "core/resident_memory.hpp"
 #include "core/run_guard.hpp"
 #include "core/workers.hpp"
 #include "exudation/exude.hpp"
@@ -226,6 +227,9 @@ private:
             });
         if (!certified && only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
         std::vector<TetId> order;
+        // The mesh will be there twice.
+        mesh.triangulation().release_scratch();
+        return_freed_memory();
         result_.mesh = extract_mesh(mesh, order);
         result_.mesh.names = plc_.names;
         result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -20,8 +21,21 @@ constexpr std::size_t kWorstListed = 8;
 /// As the certificate divides them: the boundary's tetrahedra have a vertex on a segment, a facet or in the input.
 enum class Part : std::uint8_t { all, interior, boundary };
 
+/// A tetrahedron as the goals look at it: each measures what it needs.
+struct Measured {
+    const Vec3 &a, &b, &c, &d;
+    std::int32_t region;
+    [[nodiscard]] TetShape shape() const { return shape_of(a, b, c, d); }
+    [[nodiscard]] double volume() const { return six_volumes(a, b, c, d) / 6; }
+    /// As shape_of() has it.
+    [[nodiscard]] double circumradius() const {
+        const double size = std::abs(volume());
+        return size == 0 ? std::numeric_limits<double>::infinity() : norm(scaled_circumcentre(b - a, c - a, d - a)) / (12 * size);
+    }
+};
+
 /// What shape is asked of exempt tetrahedra, too, is not counted.
-/// Counts the tetrahedra for which `excess(shape, region)` is positive and keeps the worst few.
+/// Counts the tetrahedra for which `excess(measured)` is positive and keeps the worst few.
 template <class F>
 void count_misses(const MeshResult& result, AskedAchieved& goal, F&& excess, bool of_shape, Part part = Part::all) {
     std::vector<std::pair<double, std::size_t>> missed;
@@ -31,9 +45,9 @@ void count_misses(const MeshResult& result, AskedAchieved& goal, F&& excess, boo
         while (exempt != result.exemptions.end() && exempt->tet < t) ++exempt;
         if (of_shape && exempt != result.exemptions.end() && exempt->tet == t) continue;
         const auto& c = mesh.tets[t];
-        const bool touches = std::any_of(c.begin(), c.end(), [&](std::uint32_t v) { return mesh.vertex_carriers[v].kind != CarrierKind::region; });
-        if (part != Part::all && touches != (part == Part::boundary)) continue;
-        const double by = excess(shape_of(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]]), mesh.tet_regions[t]);
+        const auto touches = [&] { return std::any_of(c.begin(), c.end(), [&](std::uint32_t v) { return mesh.vertex_carriers[v].kind != CarrierKind::region; }); };
+        if (part != Part::all && touches() != (part == Part::boundary)) continue;
+        const double by = excess(Measured{mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]], mesh.tet_regions[t]});
         if (by > 0) missed.push_back({by, t});
     }
     goal.elements_missed = missed.size();
@@ -54,7 +68,7 @@ void report_slivers(MeshResult& result, const MeshOptions& options) {
         const auto add = [&](const std::string& goal, double asked, const ShapeStatistics& of, Part part) {
             if (!(asked > 0)) return;
             AskedAchieved entry{goal, asked, of.*achieved, of.tets == 0 || of.*achieved >= asked, 0, {}};
-            if (!entry.met) count_misses(result, entry, [&](const TetShape& s, std::int32_t) { return asked - s.*value; }, true, part);
+            if (!entry.met) count_misses(result, entry, [&](const Measured& m) { return asked - m.shape().*value; }, true, part);
             result.goals.push_back(entry);
         };
         if (!at_boundary) return add(name, inside, c.unexempt, Part::all);
@@ -81,31 +95,31 @@ void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc
     const double rho = options.quality.max_radius_edge_ratio;
     const double largest = result.certificate.unexempt.max_radius_edge_ratio;
     AskedAchieved radius_edge{"max radius-edge ratio", rho, largest, largest <= rho, 0, {}};
-    if (!radius_edge.met) count_misses(result, radius_edge, [&](const TetShape& s, std::int32_t) { return s.radius_edge - rho; }, true);
+    if (!radius_edge.met) count_misses(result, radius_edge, [&](const Measured& m) { return m.shape().radius_edge - rho; }, true);
     result.goals.push_back(radius_edge);
     report_slivers(result, options);
     if (options.size.edge_length) {
         const double h = std::max(*options.size.edge_length, options.size.min_edge_length.value_or(0));
         const double bound = kCircumradiusPerEdgeLength * h * (1 + 1e-9);
         AskedAchieved size{"edge length (mean)", h, all.mean_edge, true, 0, {}};
-        count_misses(result, size, [&](const TetShape& s, std::int32_t) { return s.circumradius - bound * kSizeTolerance; }, false);
+        count_misses(result, size, [&](const Measured& m) { return m.circumradius() - bound * kSizeTolerance; }, false);
         result.goals.push_back(size);
     }
     const double least_volume = options.size.min_edge_length ? volume_of_edge_length(*options.size.min_edge_length) : 0;
     if (options.size.max_volume) {
         const double asked = std::max(*options.size.max_volume, least_volume), bound = asked * (1 + 1e-9);
         AskedAchieved volume{"max volume", asked, all.max_volume, true, 0, {}};
-        count_misses(result, volume, [&](const TetShape& s, std::int32_t) { return s.volume - bound; }, false);
+        count_misses(result, volume, [&](const Measured& m) { return m.volume() - bound; }, false);
         result.goals.push_back(volume);
     }
     for (const ValidCell& c : plc.cells) {
         if (!c.filled || !(c.max_volume > 0)) continue;
         const double asked = std::max(c.max_volume, least_volume);
         AskedAchieved volume{fmt::format("max volume in region {}", c.region), asked, 0, true, 0, {}};
-        count_misses(result, volume, [&](const TetShape& s, std::int32_t region) {
-            if (region != c.region) return 0.0;
-            volume.achieved = std::max(volume.achieved, s.volume);
-            return s.volume - asked * (1 + 1e-9);
+        count_misses(result, volume, [&](const Measured& m) {
+            if (m.region != c.region) return 0.0;
+            volume.achieved = std::max(volume.achieved, m.volume());
+            return m.volume() - asked * (1 + 1e-9);
         }, false);
         result.goals.push_back(volume);
     }

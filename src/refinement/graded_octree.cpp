@@ -75,12 +75,17 @@ void GradedOctree::balance() {
 
 std::vector<LatticePoint> GradedOctree::lattice() const {
     // Corners as cells of the grid of the greatest depth, so that those of different leaves are told to be the same exactly.
+    constexpr unsigned kBits = kMaxDepth + 1;
+    static_assert(3 * kBits <= 64);
     struct Corner {
-        std::array<std::uint32_t, 3> at{};
-        std::uint8_t depth = 0;
+        std::uint64_t at = 0;  // three coordinates, the first one in front
+        std::uint32_t depth = 0;
     };
+    const auto leaves = static_cast<std::size_t>(std::count_if(nodes_.begin(), nodes_.end(), [](const Node& n) { return n.first_child == 0 && n.used; }));
     std::vector<Corner> corners;
     std::vector<LatticePoint> points;
+    corners.reserve(leaves + leaves / 4);
+    points.reserve(2 * leaves + leaves / 4);
     for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
         const Node& n = nodes_[i];
         if (n.first_child != 0 || !n.used) continue;
@@ -88,23 +93,23 @@ std::vector<LatticePoint> GradedOctree::lattice() const {
         points.push_back({{b.lo.x + b.side / 2, b.lo.y + b.side / 2, b.lo.z + b.side / 2}, b.side});
         const unsigned shift = kMaxDepth - n.depth;
         for (std::uint32_t k = 0; k < 8; ++k) {
+            const std::array<std::uint32_t, 3> at{n.at[0] + (k & 1U), n.at[1] + ((k >> 1) & 1U), n.at[2] + (k >> 2)};
             // It is the first corner of the leaf beyond, if that is one of the same size: so most corners are listed once.
-            if (k > 0) {
-                const std::array<std::uint32_t, 3> at{n.at[0] + (k & 1U), n.at[1] + ((k >> 1) & 1U), n.at[2] + (k >> 2)};
-                if (std::max({at[0], at[1], at[2]}) < (1U << n.depth)) {
-                    const Node& beyond = nodes_[find(n.depth, at)];
-                    if (beyond.used && beyond.first_child == 0 && beyond.depth == n.depth) continue;
-                }
+            if (k > 0 && std::max({at[0], at[1], at[2]}) < (1U << n.depth)) {
+                const Node& beyond = nodes_[find(n.depth, at)];
+                if (beyond.used && beyond.first_child == 0 && beyond.depth == n.depth) continue;
             }
-            corners.push_back({{(n.at[0] + (k & 1U)) << shift, (n.at[1] + ((k >> 1) & 1U)) << shift, (n.at[2] + (k >> 2)) << shift}, n.depth});
+            corners.push_back({std::uint64_t{at[0] << shift} << (2 * kBits) | std::uint64_t{at[1] << shift} << kBits | at[2] << shift, n.depth});
         }
     }
     std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at != b.at ? a.at < b.at : a.depth > b.depth; });
     const double unit = std::ldexp(side_, -static_cast<int>(kMaxDepth));
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        if (i > 0 && corners[i].at == corners[i - 1].at) continue;
-        const auto& at = corners[i].at;
-        points.push_back({{lo_.x + at[0] * unit, lo_.y + at[1] * unit, lo_.z + at[2] * unit}, std::ldexp(side_, -static_cast<int>(corners[i].depth))});
+        const std::uint64_t at = corners[i].at;
+        if (i > 0 && at == corners[i - 1].at) continue;
+        constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+        const auto along = [&](double lo, std::uint64_t cells) { return lo + static_cast<double>(cells & kMask) * unit; };
+        points.push_back({{along(lo_.x, at >> (2 * kBits)), along(lo_.y, at >> kBits), along(lo_.z, at)}, std::ldexp(side_, -static_cast<int>(corners[i].depth))});
     }
     return points;
 }

@@ -70,7 +70,8 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
     return true;
 }
 
-bool LatticeSeeder::insert_deep(std::span<Seed> seeds) {
+/// Which seeds are farther from every face than any may be that is not clear of it.
+std::vector<char> LatticeSeeder::find_deep(std::span<const Seed> seeds) const {
     std::vector<Box> boxes;
     for (const Face& f : list_faces()) boxes.push_back({f.box[0], f.box[1]});
     const BoxTree tree(boxes);
@@ -89,12 +90,20 @@ bool LatticeSeeder::insert_deep(std::span<Seed> seeds) {
             is_deep[k] = !near;
         }
     });
+    return is_deep;
+}
+
+bool LatticeSeeder::insert_deep(std::span<Seed> seeds) {
+    const std::vector<char> is_deep = find_deep(seeds);
     std::vector<Vec3> points;
-    std::vector<std::size_t> numbers;
+    std::vector<std::uint32_t> numbers;
+    const auto deep = static_cast<std::size_t>(std::count(is_deep.begin(), is_deep.end(), 1));
+    points.reserve(deep);
+    numbers.reserve(deep);
     for (std::size_t k = 0; k < seeds.size(); ++k)
         if (is_deep[k] != 0) {
             points.push_back(seeds[k].point);
-            numbers.push_back(k);
+            numbers.push_back(static_cast<std::uint32_t>(k));
         }
     const auto caller = std::this_thread::get_id();
     std::atomic<bool> stopped{false};
@@ -106,7 +115,7 @@ bool LatticeSeeder::insert_deep(std::span<Seed> seeds) {
     const std::size_t first = mesh_.vertex_slots(), before = mesh_.vertex_count();
     const std::vector<VertexId> left = mesh_.insert_inside(workers_, points, InsertionReason::lattice, is_welcome, goes_on);
     inserted_ += mesh_.vertex_count() - before;
-    for (const std::size_t k : numbers) seeds[k].waits = false;
+    for (const std::uint32_t k : numbers) seeds[k].waits = false;
     TetId near{};
     for (const VertexId v : left) {
         if (stopped || !may_go_on(points.size())) return false;

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "conforming/place_point.hpp"
 #include "core/vec3_math.hpp"
@@ -64,54 +66,81 @@ double LatticeSeeder::radius_bound(TetId t, const Vec3& p) const {
     return mesh_.tets().is_finite(t) && mesh_.in_domain(t) ? radius_at(p, mesh_.cell(t)) : kInfinity;
 }
 
+/// Subsegments and subfaces of a tetrahedron that none within `coarseness` times its bound could have. @return whether there are any
+bool LatticeSeeder::list_too_large(TetId t, double coarseness, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const {
+    const TetStore& tets = mesh_.tets();
+    if (!mesh_.has_labels(t) || !tets.is_finite(t)) return false;  // nearly all have none: few of them need be fetched
+    const double bound = sizes_.varies() ? 0 : coarseness * radius_bound(t, {});
+    if (bound == kInfinity) return false;
+    const auto is_beyond = [&](double radius, const Vec3& p) { return radius > (sizes_.varies() ? coarseness * radius_bound(t, p) : bound); };
+    const TetLabels& l = mesh_.labels(t);
+    const auto& c = tets.corners(t);
+    const std::size_t before = segments.size() + faces.size();
+    for (unsigned e = 0; e < 6; ++e) {
+        const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
+        if (!l.segments[e].valid()) continue;
+        const Vec3 &p = mesh_.point(a), &q = mesh_.point(b);
+        if (is_beyond(distance(p, q) / 2, 0.5 * (p + q))) segments.push_back({std::min(a, b), std::max(a, b), l.segments[e]});
+    }
+    for (unsigned f = 0; f < 4; ++f) {
+        if (!l.facets[f].valid()) continue;
+        const auto fc = tets.face_corners(TetFace{t, f});
+        double radius = 0;
+        const Vec3 &p = mesh_.point(fc[0]), &q = mesh_.point(fc[1]), &r = mesh_.point(fc[2]);
+        circumcentre(p, q, r, &radius);
+        if (is_beyond(radius, (1.0 / 3) * (p + q + r))) faces.push_back({fc, l.facets[f]});
+    }
+    return segments.size() + faces.size() > before;
+}
+
 /// Circumspheres of tetrahedra at a subsegment or subface are at least as large as its own: splitting it is never in vain.
 bool LatticeSeeder::split_boundary(double coarseness) {
     const TetStore& tets = mesh_.tets();
+    // To be looked at in the next round: what was too large, and what is new.
+    std::vector<TetId> waiting;
+    const auto note_new = [&](VertexId) {
+        for (const TetId t : mesh_.triangulation().new_tets())
+            if (mesh_.has_labels(t)) waiting.push_back(t);
+    };
+    struct Listening {
+        std::function<void(VertexId)>& hook;
+        std::function<void(VertexId)> before;
+        ~Listening() { hook.swap(before); }
+    } const listening{boundary_.on_insert, std::exchange(boundary_.on_insert, note_new)};
     std::vector<Subsegment> segments;
     std::vector<Subface> faces;
-    std::size_t vertices_before = 0;
-    do {
-        vertices_before = mesh_.vertex_count();
+    const SplitRequest request{InsertionReason::boundary_by_size, VertexId{}};
+    for (bool looks_at_all = true;;) {
+        const std::size_t vertices_before = mesh_.vertex_count();
         segments.clear();
         faces.clear();
-        for (std::size_t i = 0; i < tets.slots(); ++i) {
-            const TetId t{i};
-            if (!tets.is_finite(t) || !mesh_.has_labels(t)) continue;
-            const double bound = sizes_.varies() ? 0 : coarseness * radius_bound(t, {});
-            if (bound == kInfinity) continue;
-            const auto is_beyond = [&](double radius, const Vec3& p) { return radius > (sizes_.varies() ? coarseness * radius_bound(t, p) : bound); };
-            const TetLabels& l = mesh_.labels(t);
-            const auto& c = tets.corners(t);
-            for (unsigned e = 0; e < 6; ++e) {
-                const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
-                if (!l.segments[e].valid()) continue;
-                const Vec3 &p = mesh_.point(a), &q = mesh_.point(b);
-                if (is_beyond(distance(p, q) / 2, 0.5 * (p + q))) segments.push_back({std::min(a, b), std::max(a, b), l.segments[e]});
-            }
-            for (unsigned f = 0; f < 4; ++f) {
-                if (!l.facets[f].valid()) continue;
-                const auto fc = tets.face_corners(TetFace{t, f});
-                double radius = 0;
-                const Vec3 &p = mesh_.point(fc[0]), &q = mesh_.point(fc[1]), &r = mesh_.point(fc[2]);
-                circumcentre(p, q, r, &radius);
-                if (is_beyond(radius, (1.0 / 3) * (p + q + r))) faces.push_back({fc, l.facets[f]});
-            }
+        std::vector<TetId> looked_at = std::exchange(waiting, {});
+        const auto look_at = [&](TetId t) {
+            if (list_too_large(t, coarseness, segments, faces)) waiting.push_back(t);
+        };
+        if (looks_at_all) {
+            for (std::size_t i = 0; i < tets.slots(); ++i) look_at(TetId{i});
+        } else {
+            std::sort(looked_at.begin(), looked_at.end());
+            looked_at.erase(std::unique(looked_at.begin(), looked_at.end()), looked_at.end());
+            for (const TetId t : looked_at) look_at(t);
         }
-        const SplitRequest request{InsertionReason::boundary_by_size, VertexId{}};
         for (const Subsegment& s : segments) {
             if (!may_go_on(segments.size())) break;
             if (mesh_.find_subsegment(s).valid()) boundary_.split(s, request);
         }
         boundary_.conform();
         if (!may_go_on(faces.size())) return false;
-        if (!segments.empty()) continue;  // facets once their outlines are done
-        for (const Subface& s : faces) {
-            if (!may_go_on(faces.size())) return false;
-            boundary_.split(s, request);
-            boundary_.conform();
-        }
-    } while (mesh_.vertex_count() > vertices_before);  // what rounding keeps from being split is left to refinement
-    return true;
+        if (segments.empty())  // facets once their outlines are done
+            for (const Subface& s : faces) {
+                if (!may_go_on(faces.size())) return false;
+                boundary_.split(s, request);
+                boundary_.conform();
+            }
+        const bool has_split = mesh_.vertex_count() > vertices_before;
+        if (!has_split && looks_at_all) return true;  // what rounding keeps from being split is left to refinement
+        looks_at_all = !has_split;
+    }
 }
 
 std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
@@ -119,7 +148,7 @@ std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
     std::vector<Face> out;
     for (std::size_t i = 0; i < tets.slots(); ++i) {
         const TetId t{i};
-        if (!tets.is_finite(t) || !mesh_.has_labels(t)) continue;
+        if (!mesh_.has_labels(t) || !tets.is_finite(t)) continue;
         if (!mesh_.in_domain(t)) continue;
         for (unsigned f = 0; f < 4; ++f) {
             if (!mesh_.labels(t).facets[f].valid()) continue;
@@ -215,6 +244,7 @@ std::uint64_t LatticeSeeder::seed() {
         // As many as the coarse mesh would have.
         const auto share = static_cast<std::size_t>(static_cast<double>(seeds.size()) / (coarseness * coarseness * coarseness));
         const bool goes_on = insert_seeds({seeds.data(), share});
+        if (coarseness == 1) std::vector<Seed>().swap(seeds);  // memory is short while tetrahedra are numbered
         mesh_.renumber_tets(workers_);  // what comes next goes by ids
         if (!goes_on) break;
     }

@@ -44,6 +44,7 @@ private:
 
     /// Down to `coarseness` times the bound. @return false if the guard said stop.
     bool split_boundary(double coarseness);
+    bool list_too_large(TetId t, double coarseness, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     [[nodiscard]] bool may_go_on(std::uint64_t waiting) { return guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting) == RunGuard::Verdict::go_on; }
     [[nodiscard]] std::vector<LatticePoint> find_lattice(double base);
     /// A point of the lattice that waits, moved by its jitter.
@@ -54,6 +55,7 @@ private:
     };
     [[nodiscard]] std::vector<Seed> seeds_of(const std::vector<LatticePoint>& lattice);
     bool insert_seeds(std::span<Seed> seeds);
+    [[nodiscard]] std::vector<char> find_deep(std::span<const Seed> seeds) const;
     bool insert_deep(std::span<Seed> seeds);
     Outcome insert(const Vec3& p, TetId& near, VertexId known = {});
     [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;

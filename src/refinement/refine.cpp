@@ -36,8 +36,6 @@ Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guar
     double largest = 0;
     for (const Vec3& p : mesh.plc().vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     rounding_ = 64 * largest * 0x1p-53;  // heights of a few ulp
-    boundary_.on_insert = [this](VertexId) { enqueue(mesh_.triangulation().new_tets()); };
-    boundary_.on_repair = [this](const std::vector<TetId>& tets) { enqueue(tets); };
     boundary_.judge = [this](const Cavity& cavity, const Placement& where, double radius) { return !judging_ || accepts(cavity, where, radius); };
 }
 
@@ -85,6 +83,12 @@ void Refiner::enqueue_all() {
     enqueue(all);
 }
 
+/// From now on what is made is looked at; before, all of it would wait in vain, as the mesh is looked at as a whole.
+void Refiner::listen() {
+    boundary_.on_insert = [this](VertexId) { enqueue(mesh_.triangulation().new_tets()); };
+    boundary_.on_repair = [this](const std::vector<TetId>& tets) { enqueue(tets); };
+}
+
 void Refiner::report_milestones() {
     if (!by_size_.empty()) return;
     if (!std::exchange(size_met_, true)) original_vertices_ = mesh_.vertex_slots();
@@ -130,6 +134,7 @@ RunGuard::Verdict Refiner::refine() {
     frugal_from_ += static_cast<std::size_t>(std::min(2 * sizes_.expected_vertices(), 1e9));
     split_sized_boundary();
     enqueue_all();
+    listen();
     keeps_last_ = max_vertices_.has_value() || boundary_.acute().any();
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     for (unsigned cascades = 0;; ++cascades) {

@@ -82,6 +82,7 @@ private:
     void keep_last();
     void enqueue(const std::vector<TetId>& tets);
     void enqueue_all();
+    void listen();
     void process(TetId t, InsertionReason reason);
     void split_flat(TetId t);
     void process_centre(TetId t, InsertionReason reason, const Vec3& centre, double radius);

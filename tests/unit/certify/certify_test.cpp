@@ -267,6 +267,19 @@ TEST(Overlap, TwoMeshesOfOneCubeAreFound) {
     EXPECT_EQ(certify(m).find("disjoint_tets")->state, Claim::State::proven);
 }
 
+// The box of the large tetrahedron's slanted face holds the other two, which are beyond its plane: that says nothing about their own faces' planes.
+TEST(Overlap, IsFoundWhereAnotherPlaneIsLookedAtFirst) {
+    TetMesh m;
+    m.vertices = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10}};
+    for (const double x : {7.0, 7.2})
+        for (const Vec3& corner : {Vec3{x, x, x}, Vec3{x + 1, x, x}, Vec3{x, x + 1, x}, Vec3{x, x, x + 1}}) m.vertices.push_back(corner);
+    m.tets = {{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}};
+    EXPECT_EQ(certify(m).find("positive_tets")->state, Claim::State::proven);
+    EXPECT_EQ(certify(m).find("disjoint_tets")->violations, 2U);
+    for (std::size_t v = 8; v < 12; ++v) m.vertices[v] = m.vertices[v] + Vec3{0, 0, 1};
+    EXPECT_EQ(certify(m).find("disjoint_tets")->state, Claim::State::proven);
+}
+
 // Delaunay by faces and Delaunay by searching every ball agree, on meshes that are and on meshes that are not.
 TEST(Delaunay, ProofByFacesAgreesWithTheSearch) {
     int proven = 0, refuted = 0;

@@ -118,7 +118,8 @@ TEST(Renumber, TheSameMeshInCanonicalOrder) {
         Triangulation mesh({0, 0, 0}, {1, 1, 1});
         ASSERT_TRUE(mesh.insert_all_in_order(points, biased_spatial_order(points), workers));
         const TetStore before = mesh.tets();
-        const std::vector<TetId> old_of = mesh.renumber(workers);
+        const Triangulation::Renumbering renumbering = mesh.renumber(workers);
+        const std::vector<TetId>& old_of = renumbering.old_of;
         EXPECT_EQ(mesh.tets().slots(), before.live());
         EXPECT_EQ(mesh.tets().live(), before.live());
         EXPECT_EQ(check_adjacency(mesh) + check_delaunay(mesh), "");
@@ -126,6 +127,7 @@ TEST(Renumber, TheSameMeshInCanonicalOrder) {
         for (std::size_t i = 0; i < old_of.size(); ++i) {
             const TetStore::Corners c = mesh.tets().corners(TetId{i});
             EXPECT_EQ(c, canonical_corners(before.corners(old_of[i])));
+            for (unsigned k = 0; k < 4; ++k) EXPECT_EQ(c[k], before.corner(old_of[i], renumbering.old_corner(TetId{i}, k)));
             EXPECT_TRUE(i == 0 || last < c);
             last = c;
         }
