@@ -129,7 +129,7 @@ void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId s
             refused.push_back(i);
             continue;
         }
-        if (!grow_cavity<true>(p, at, cavity, [](const BoundaryFace&) { return true; }) || tets_.room() + cavity.tets.size() < cavity.boundary.size()) {
+        if (!grow_in_waves<true>(p, at, cavity) || tets_.room() + cavity.tets.size() < cavity.boundary.size()) {
             left.push_back(i);
             continue;
         }
@@ -205,7 +205,7 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
         // An insertion makes 6.77 tetrahedra more in random points.
         z.slots = tets_.take_slots(7 * z.order.size() + 1000);
     }
-    if (epoch_ > std::numeric_limits<std::uint32_t>::max() / 2) {
+    if (epoch_ > kLastEpoch / 2) {
         std::fill(mark_.begin(), mark_.end(), 0U);
         epoch_ = 0;
     }

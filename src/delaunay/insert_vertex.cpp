@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Changes that add: starting simplex, insertion into a found cavity, bulk insertion.
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <tuple>
 
@@ -44,48 +43,67 @@ void Triangulation::start(VertexId a, VertexId b, VertexId c, VertexId d) {
     last_located_ = inner;
 }
 
-TetId Triangulation::create_tet(std::size_t recycled, const std::vector<TetId>& pool) {
-    return recycled < pool.size() ? pool[recycled] : tets_.allocate();
-}
-
 void Triangulation::clear_local_numbers(std::size_t most) {
     if (local_.size() < most + 2) local_.resize(2 * most + 2);
     local_[0] = kInfiniteVertex;
     local_count_ = 1;
 }
 
-/// Two new tetrahedra meet in a face (v, x, y) iff their boundary faces share the edge xy, which they list in opposite directions: a table
-/// over pairs of local numbers, usually 4 kB and so in the first-level cache, finds the partner without a search.
+/// Reads the boundary, all of it before any tetrahedron is overwritten: new ones take the ids of deleted ones. A ghost's face is turned until infinity comes last.
 ///
-/// New tetrahedron i is (f0, f1, f2, v) for the boundary face (f0, f1, f2), so that its face k is the one opposite to f_k. At the hull
-/// the face is turned until infinity is f2; (f0, f1, inf, v) is positive, hence so is (f1, f0, v, inf).
-template <bool kOnHull, bool kByTable>
-void Triangulation::create_new_tets(VertexId v, const Cavity& cavity) {
-    const std::size_t n = faces_.size();
-    const std::size_t stride = kByTable ? std::max<std::size_t>(32, std::bit_ceil(std::size_t{local_count_})) : 1;
-    if (edge_table_.size() < stride * stride) edge_table_.resize(stride * stride);
-    // Without a table all edges share a cell: whatever it holds is replaced by join_by_sorting().
-    const auto cell = [stride](std::uint32_t x, std::uint32_t y) { return kByTable ? x * stride + y : 0; };
-    auto face_number = [](const NewFace& f, unsigned k) -> unsigned {
-        if (!kOnHull || f.corners[2] != kInfiniteVertex) return k;
-        constexpr std::array<std::uint8_t, 3> kGhostFace{1, 0, 3};
-        return kGhostFace[k];
+/// Two new tetrahedra meet in a face (v, x, y) iff their boundary faces share the edge xy, which they list in opposite directions: a table over pairs of numbers
+/// below kStride, given to vertices as they come, finds the partner without a search. With kStride 64 what it uses stays in the first-level cache. Whether a
+/// vertex has come before can't be foreseen: no branch.
+template <std::uint32_t kStride>
+void Triangulation::read_faces(const Cavity& cavity) {
+    std::array<VertexId, kStride> met;  // by number
+    met.fill(VertexId{});
+    met[0] = kInfiniteVertex;
+    std::uint32_t count = 1;
+    Vertex* const vertices = vertices_.data();
+    const auto number = [&](VertexId v) {
+        std::uint32_t& place = vertices[v.index()].local;  // left by an earlier operation perhaps
+        const std::uint32_t known = place % kStride;
+        const std::uint32_t is_new = met[known] != v ? 1 : 0, result = known ^ ((known ^ count) & (0 - is_new));
+        count += is_new;
+        met[result] = v;
+        place = result;
+        return result;
     };
-    for (std::size_t i = 0; i < n; ++i) {
-        const TetId t = create_tet(i, cavity.tets);
-        new_tets_[i] = t;
-        const NewFace& f = faces_[i];
-        const auto [a, b, c] = f.local;
-        edge_table_[cell(b, c)] = TetFace{t, face_number(f, 0)};
-        edge_table_[cell(c, a)] = TetFace{t, face_number(f, 1)};
-        edge_table_[cell(a, b)] = TetFace{t, face_number(f, 2)};
+    if (edge_table_.size() < std::size_t{kStride} * kStride) edge_table_.resize(std::size_t{kStride} * kStride);
+    TetFace* const edges = edge_table_.data();
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+        auto corners = tets_.face_corners(cavity.boundary[i].inside);
+        while (corners[0] == kInfiniteVertex || corners[1] == kInfiniteVertex) [[unlikely]] corners = {corners[1], corners[2], corners[0]};
+        const unsigned ghost = corners[2] == kInfiniteVertex ? 1 : 0;
+        const std::uint32_t a = number(corners[0]), b = number(corners[1]), c = ghost != 0 ? 0 : number(corners[2]);
+        faces_[i] = {corners, {c * kStride + b, a * kStride + c, b * kStride + a}, cavity.boundary[i].outside};
+        const TetId t = new_tets_[i];
+        edges[b * kStride + c] = TetFace{t, 0 ^ ghost};  // of a ghost (f1, f0, v, inf): see set_new_tets()
+        edges[c * kStride + a] = TetFace{t, 1 ^ ghost};
+        edges[a * kStride + b] = TetFace{t, 2 ^ ghost};
     }
-    for (std::size_t i = 0; i < n; ++i) {
+}
+
+/// Large cavities, where the table would not stay in any near cache.
+void Triangulation::read_faces_only(const Cavity& cavity) {
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+        auto corners = tets_.face_corners(cavity.boundary[i].inside);
+        while (corners[0] == kInfiniteVertex || corners[1] == kInfiniteVertex) corners = {corners[1], corners[2], corners[0]};
+        faces_[i] = {corners, {0, 0, 0}, cavity.boundary[i].outside};
+    }
+    if (edge_table_.empty()) edge_table_.resize(1);  // whatever it holds is replaced by join_by_sorting()
+}
+
+/// New tetrahedron i is (f0, f1, f2, v) for the boundary face (f0, f1, f2), so that its face k is the one opposite to f_k; (f0, f1, inf, v) is positive, hence so
+/// is (f1, f0, v, inf).
+void Triangulation::set_new_tets(VertexId v) {
+    const TetFace* const edges = edge_table_.data();
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
         const NewFace& f = faces_[i];
         const TetId t = new_tets_[i];
-        const auto [a, b, c] = f.local;
-        const TetFace across0 = edge_table_[cell(c, b)], across1 = edge_table_[cell(a, c)], across2 = edge_table_[cell(b, a)];
-        if (kOnHull && f.corners[2] == kInfiniteVertex) {
+        const TetFace across0 = edges[f.edges[0]], across1 = edges[f.edges[1]], across2 = edges[f.edges[2]];
+        if (f.corners[2] == kInfiniteVertex) {
             tets_.set(t, {f.corners[1], f.corners[0], v, kInfiniteVertex}, {across1, across0, f.outside, across2});
             tets_.set_across(f.outside, TetFace{t, 2});
             continue;
@@ -97,7 +115,7 @@ void Triangulation::create_new_tets(VertexId v, const Cavity& cavity) {
     }
 }
 
-/// Large cavities, where the table would not stay in the cache: sets the adjacencies between new tetrahedra.
+/// Sets the adjacencies between new tetrahedra without a table.
 void Triangulation::join_by_sorting() {
     struct Edge {
         VertexId low, high;
@@ -124,29 +142,17 @@ void Triangulation::join_by_sorting() {
 }
 
 void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
-    const std::size_t n = cavity.boundary.size();
+    const std::size_t n = cavity.boundary.size(), recycled = std::min(n, cavity.tets.size());
     faces_.resize(n);
-    new_tets_.resize(n);
-    clear_local_numbers(3 * n);
-    bool on_hull = false;
-    // Read all faces before any tetrahedron is overwritten: new ones take the ids of deleted ones.
-    for (std::size_t i = 0; i < n; ++i) {
-        auto corners = tets_.face_corners(cavity.boundary[i].inside);
-        if (corners[0] == kInfiniteVertex || corners[1] == kInfiniteVertex || corners[2] == kInfiniteVertex) {
-            on_hull = true;
-            while (corners[2] != kInfiniteVertex) corners = {corners[1], corners[2], corners[0]};
-        }
-        faces_[i] = {corners, {local_number(corners[0]), local_number(corners[1]), local_number(corners[2])}, cavity.boundary[i].outside};
-    }
-    constexpr std::size_t kLargestTable = 128;
-    if (local_count_ > kLargestTable) {
-        create_new_tets<true, false>(v, cavity);
-        join_by_sorting();
-    } else if (on_hull) {
-        create_new_tets<true, true>(v, cavity);
-    } else {
-        create_new_tets<false, true>(v, cavity);
-    }
+    new_tets_.assign(cavity.tets.begin(), cavity.tets.begin() + static_cast<std::ptrdiff_t>(recycled));
+    while (new_tets_.size() < n) new_tets_.push_back(tets_.allocate());
+    // The boundary is a sphere of triangles: n / 2 + 2 vertices; and 0 is taken.
+    const std::size_t numbers = n / 2 + 3;
+    if (numbers <= 64) read_faces<64>(cavity);
+    else if (numbers <= 128) read_faces<128>(cavity);
+    else read_faces_only(cavity);
+    set_new_tets(v);
+    if (numbers > 128) join_by_sorting();
     for (std::size_t i = n; i < cavity.tets.size(); ++i) tets_.release(cavity.tets[i]);
     last_located_ = new_tets_[0];
 }

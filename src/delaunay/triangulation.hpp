@@ -176,7 +176,7 @@ private:
     struct alignas(32) Vertex {
         Vec3 point;
         TetId tet{};
-        std::uint32_t local = 0;  ///< place in local_, if that holds this vertex: scratch of one operation
+        std::uint32_t local = 0;  ///< its number in one operation; anything at the beginning of another
     };
     static_assert(sizeof(Vertex) == 32);
 
@@ -187,10 +187,12 @@ private:
             __builtin_prefetch(mark_.data() + n.index());
         }
     }
-    TetId create_tet(std::size_t recycled, const std::vector<TetId>& pool);
     void ensure_marks();
     void next_epoch();
     bool search_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity);
+    template <bool kZoned>
+    bool grow_in_waves(const Vec3& p, TetId seed, Cavity& cavity);
+    void decide_wave(const Vec3& p, std::size_t candidates);
     template <bool kZoned, class Accept>
     bool grow_cavity(const Vec3& p, TetId seed, Cavity& cavity, const Accept& accept);
     template <bool kZoned>
@@ -220,8 +222,10 @@ private:
         local_count_ += is_new ? 1 : 0;
         return number;
     }
-    template <bool kOnHull, bool kByTable>
-    void create_new_tets(VertexId v, const Cavity& cavity);
+    template <std::uint32_t kStride>
+    void read_faces(const Cavity& cavity);
+    void read_faces_only(const Cavity& cavity);
+    void set_new_tets(VertexId v);
     void join_by_sorting();
 
     TetStore tets_;
@@ -236,11 +240,18 @@ private:
     // scratch
     SharedArray<std::uint32_t> mark_;  // per tet: epoch_ visited and not in conflict, epoch_ + 1 in conflict
     std::uint32_t epoch_ = 0;
+    static constexpr std::uint32_t kLastEpoch = std::numeric_limits<std::int32_t>::max() - 4;  // differences of epochs have a sign
+    struct Wave {  // grow_in_waves()
+        std::vector<TetId> taken, candidates;
+        std::vector<RecordNumbers> corners;
+        std::vector<double> values;
+        std::vector<BoundaryFace> boundary;
+    } wave_;
     std::vector<TetId> new_tets_;
     std::vector<TetId> star_stack_;
     struct NewFace {
         std::array<VertexId, 3> corners;
-        std::array<std::uint32_t, 3> local;
+        std::array<std::uint32_t, 3> edges;  // in edge_table_, as the neighbours list them
         TetFace outside;
     };
     std::vector<NewFace> faces_;
