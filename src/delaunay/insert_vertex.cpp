@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "core/check.hpp"
 #include "delaunay/collinear.hpp"
+#include "delaunay/local_numbers.hpp"
 #include "delaunay/spatial_order.hpp"
 #include "delaunay/triangulation.hpp"
 
@@ -49,39 +51,50 @@ void Triangulation::clear_local_numbers(std::size_t most) {
     local_count_ = 1;
 }
 
+/// Makes sure that there is a stamp for each of so many insertions, if there can be.
+void Triangulation::renew_stamps(std::size_t insertions) {
+    if (stamp_ + insertions <= StampedNumbers::kLastStamp) return;
+    for (Vertex& v : vertices_) v.local = 0;
+    stamp_ = 0;
+}
+
 /// Reads the boundary, all of it before any tetrahedron is overwritten: new ones take the ids of deleted ones. A ghost's face is turned until infinity comes last.
 ///
 /// Two new tetrahedra meet in a face (v, x, y) iff their boundary faces share the edge xy, which they list in opposite directions: a table over pairs of numbers
-/// below kStride, given to vertices as they come, finds the partner without a search. With kStride 64 what it uses stays in the first-level cache. Whether a
-/// vertex has come before can't be foreseen: no branch.
-template <std::uint32_t kStride>
-void Triangulation::read_faces(const Cavity& cavity) {
-    std::array<VertexId, kStride> met;  // by number
-    met.fill(VertexId{});
-    met[0] = kInfiniteVertex;
-    std::uint32_t count = 1;
+/// finds the partner without a search. What it uses stays in the first-level cache.
+template <class Numbers>
+void Triangulation::read_faces(const Cavity& cavity, Numbers numbers) {
+    constexpr std::uint32_t kStride = Numbers::kMost;
     Vertex* const vertices = vertices_.data();
-    const auto number = [&](VertexId v) {
-        std::uint32_t& place = vertices[v.index()].local;  // left by an earlier operation perhaps
-        const std::uint32_t known = place % kStride;
-        const std::uint32_t is_new = met[known] != v ? 1 : 0, result = known ^ ((known ^ count) & (0 - is_new));
-        count += is_new;
-        met[result] = v;
-        place = result;
-        return result;
-    };
+    const auto number = [&](VertexId v) { return numbers(v, vertices[v.index()].local); };
     if (edge_table_.size() < std::size_t{kStride} * kStride) edge_table_.resize(std::size_t{kStride} * kStride);
+    // Nothing here makes these move.
     TetFace* const edges = edge_table_.data();
-    for (std::size_t i = 0; i < faces_.size(); ++i) {
-        auto corners = tets_.face_corners(cavity.boundary[i].inside);
-        while (corners[0] == kInfiniteVertex || corners[1] == kInfiniteVertex) [[unlikely]] corners = {corners[1], corners[2], corners[0]};
-        const unsigned ghost = corners[2] == kInfiniteVertex ? 1 : 0;
-        const std::uint32_t a = number(corners[0]), b = number(corners[1]), c = ghost != 0 ? 0 : number(corners[2]);
-        faces_[i] = {corners, {c * kStride + b, a * kStride + c, b * kStride + a}, cavity.boundary[i].outside};
-        const TetId t = new_tets_[i];
-        edges[b * kStride + c] = TetFace{t, 0 ^ ghost};  // of a ghost (f1, f0, v, inf): see set_new_tets()
-        edges[c * kStride + a] = TetFace{t, 1 ^ ghost};
-        edges[a * kStride + b] = TetFace{t, 2 ^ ghost};
+    NewFace* const faces = faces_.data();
+    const TetId* const tets = new_tets_.data();
+    const BoundaryFace* const boundary = cavity.boundary.data();
+    const std::size_t n = faces_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const TetStore::Corners& of = tets_.corners(boundary[i].inside.tet());
+        const auto& at = kFaceCorners[boundary[i].inside.face()];
+        VertexId x = of[at[0]], y = of[at[1]], z = of[at[2]];
+        std::uint32_t a = 0, b = 0, c = 0, ghost = 0;
+        if (of[3] == kInfiniteVertex && (x == kInfiniteVertex || y == kInfiniteVertex || z == kInfiniteVertex)) [[unlikely]] {
+            while (z != kInfiniteVertex) z = std::exchange(x, std::exchange(y, z));
+            a = number(x);
+            b = number(y);
+            ghost = 1;
+        } else {
+            a = number(x);
+            b = number(y);
+            c = number(z);
+        }
+        const std::uint32_t row_a = a * kStride, row_b = b * kStride, row_c = c * kStride;
+        faces[i] = {{x, y, z}, {row_c + b, row_a + c, row_b + a}, boundary[i].outside};
+        const TetId t = tets[i];
+        edges[row_b + c] = TetFace{t, 0 ^ ghost};  // of a ghost (f1, f0, v, inf): see set_new_tets()
+        edges[row_c + a] = TetFace{t, 1 ^ ghost};
+        edges[row_a + b] = TetFace{t, 2 ^ ghost};
     }
 }
 
@@ -99,20 +112,26 @@ void Triangulation::read_faces_only(const Cavity& cavity) {
 /// is (f1, f0, v, inf).
 void Triangulation::set_new_tets(VertexId v) {
     const TetFace* const edges = edge_table_.data();
-    for (std::size_t i = 0; i < faces_.size(); ++i) {
-        const NewFace& f = faces_[i];
-        const TetId t = new_tets_[i];
+    const NewFace* const faces = faces_.data();
+    const TetId* const tets = new_tets_.data();
+    Vertex* const vertices = vertices_.data();
+    const std::size_t n = faces_.size();
+    TetId home{};
+    for (std::size_t i = 0; i < n; ++i) {
+        const NewFace& f = faces[i];
+        const TetId t = tets[i];
         const TetFace across0 = edges[f.edges[0]], across1 = edges[f.edges[1]], across2 = edges[f.edges[2]];
-        if (f.corners[2] == kInfiniteVertex) {
+        if (f.corners[2] == kInfiniteVertex) [[unlikely]] {
             tets_.set(t, {f.corners[1], f.corners[0], v, kInfiniteVertex}, {across1, across0, f.outside, across2});
             tets_.set_across(f.outside, TetFace{t, 2});
             continue;
         }
         tets_.set(t, {f.corners[0], f.corners[1], f.corners[2], v}, {across0, across1, across2, f.outside});
         tets_.set_across(f.outside, TetFace{t, 3});
-        for (const VertexId x : f.corners) vertices_[x.index()].tet = t;
-        vertices_[v.index()].tet = t;
+        for (const VertexId x : f.corners) vertices[x.index()].tet = t;
+        home = t;
     }
+    vertices[v.index()].tet = home;
 }
 
 /// Sets the adjacencies between new tetrahedra without a table.
@@ -148,11 +167,12 @@ void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
     while (new_tets_.size() < n) new_tets_.push_back(tets_.allocate());
     // The boundary is a sphere of triangles: n / 2 + 2 vertices; and 0 is taken.
     const std::size_t numbers = n / 2 + 3;
-    if (numbers <= 64) read_faces<64>(cavity);
-    else if (numbers <= 128) read_faces<128>(cavity);
+    constexpr std::uint32_t kMany = 128;
+    if (numbers <= StampedNumbers::kMost && stamp_ < StampedNumbers::kLastStamp) [[likely]] read_faces(cavity, StampedNumbers(++stamp_));
+    else if (numbers <= kMany) read_faces(cavity, ListedNumbers<kMany>());
     else read_faces_only(cavity);
     set_new_tets(v);
-    if (numbers > 128) join_by_sorting();
+    if (numbers > kMany) join_by_sorting();
     for (std::size_t i = n; i < cavity.tets.size(); ++i) tets_.release(cavity.tets[i]);
     last_located_ = new_tets_[0];
 }
@@ -194,8 +214,11 @@ bool Triangulation::insert_all(std::span<const Vec3> points, const Checkpoint& c
 
 bool Triangulation::insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order, Workers& workers) {
     vertices_.clear();
-    vertices_.reserve(points.size());
-    for (const std::uint32_t i : order) vertices_.push_back({points[i]});
+    vertices_.resize_as_is(order.size());
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    workers.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) vertices_[i] = Vertex{points[order[i]]};
+    });
     std::vector<std::uint32_t> identity(order.size());
     std::iota(identity.begin(), identity.end(), 0U);
     if (!start_from(identity)) return false;

@@ -21,6 +21,7 @@
 #include "core/ids.hpp"
 #include "core/shared_array.hpp"
 #include "core/workers.hpp"
+#include "delaunay/local_numbers.hpp"
 #include "delaunay/tet_store.hpp"
 #include "predicates/predicates.hpp"
 #include "wellmesh/vec3.hpp"
@@ -176,7 +177,7 @@ private:
     struct alignas(32) Vertex {
         Vec3 point;
         TetId tet{};
-        std::uint32_t local = 0;  ///< its number in one operation; anything at the beginning of another
+        std::uint32_t local = 0;  ///< its number in one operation (local_numbers.hpp)
     };
     static_assert(sizeof(Vertex) == 32);
 
@@ -214,16 +215,18 @@ private:
     std::uint32_t local_number(VertexId v) {
         if (v == kInfiniteVertex) return 0;
         // Whether a vertex is new can't be foreseen: no branch. There is room for one number too many.
-        std::uint32_t& number = vertices_[v.index()].local;
-        const std::uint32_t known = std::min(number, local_count_);
+        std::uint32_t& word = vertices_[v.index()].local;
+        const std::uint32_t known = std::min(word & ~kUnstamped, local_count_);
         const bool is_new = known == local_count_ || local_[known] != v;
-        number = is_new ? local_count_ : known;
+        const std::uint32_t number = is_new ? local_count_ : known;
+        word = kUnstamped | number;
         local_[number] = v;
         local_count_ += is_new ? 1 : 0;
         return number;
     }
-    template <std::uint32_t kStride>
-    void read_faces(const Cavity& cavity);
+    template <class Numbers>
+    void read_faces(const Cavity& cavity, Numbers numbers);
+    void renew_stamps(std::size_t insertions);
     void read_faces_only(const Cavity& cavity);
     void set_new_tets(VertexId v);
     void join_by_sorting();
@@ -258,6 +261,7 @@ private:
     std::vector<TetFace> outside_;
     std::vector<VertexId> local_;
     std::uint32_t local_count_ = 0;
+    std::uint32_t stamp_ = 0;  // of the last numbers: no vertex's word has a greater one
     std::vector<TetFace> edge_table_;
     mutable TetId last_located_{};
     std::uint8_t* zone_of_tet_ = nullptr;
