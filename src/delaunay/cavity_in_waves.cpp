@@ -55,23 +55,27 @@ bool Triangulation::grow_in_waves(const Vec3& p, TetId seed, Cavity& cavity) {
         }
         double* const values = w.values.data();
         filter_.insphere_values_of(points, {w.corners.data(), count}, p, values);
-        const double bound = filter_.insphere_bound();
-        bool undecided = false;
-        for (std::size_t k = 0; k < count; ++k) undecided |= !(std::fabs(values[k]) > bound);
-        if (undecided) [[unlikely]] {
+        TetId* const list = w.taken.data();
+        std::uint32_t undecided = 0;
+        const auto deal = [&](std::size_t into, double limit) {
+            for (std::size_t k = 0; k < count; ++k) {
+                const TetId t = candidates[k];
+                const std::uint32_t conflict = values[k] > limit ? 1 : 0;
+                undecided |= conflict ^ (values[k] < -limit ? 0 : 1);
+                list[into] = t;
+                into += conflict;
+                marks[t.index()] = kept + conflict;
+            }
+            return into;
+        };
+        taken = deal(end, filter_.insphere_bound());
+        if (undecided != 0) [[unlikely]] {
             if constexpr (kZoned) {
                 for (std::size_t k = 0; k < count; ++k)
                     if (tets_.is_ghost(candidates[k]) && !is_mine(tets_.across(candidates[k], 3).tet())) return false;
             }
             decide_wave(p, count);
-        }
-        TetId* const list = w.taken.data();
-        for (std::size_t k = 0; k < count; ++k) {
-            const bool conflict = values[k] > 0;
-            const TetId t = candidates[k];
-            list[taken] = t;
-            taken += conflict ? 1 : 0;
-            marks[t.index()] = kept + (conflict ? 1 : 0);
+            taken = deal(end, 0);
         }
     }
 

@@ -3,6 +3,7 @@
 // be foreseen. Each vertex has a word of scratch for them, which holds anything at the beginning.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -22,9 +23,9 @@ public:
 
     explicit StampedNumbers(std::uint32_t stamp) : stamp_(stamp * kMost) {}
     std::uint32_t operator()(VertexId, std::uint32_t& word) {
-        const std::uint32_t known = word ^ stamp_, is_new = known >= kMost ? 1 : 0;
-        const std::uint32_t number = known ^ ((known ^ count_) & (0 - is_new));
-        count_ += is_new;
+        const std::uint32_t known = word ^ stamp_;
+        const std::uint32_t number = std::min(known, count_);  // a new vertex's word is kMost or more
+        count_ += known >= kMost ? 1 : 0;
         word = stamp_ | number;
         return number;
     }
