@@ -31,7 +31,7 @@ public:
 private:
     template <class Chain>
     bool attempt(Chain&& chain);
-    bool merge(VertexId v, VertexId into, const Vec3& home, double limit);
+    bool close_up(VertexId into, const Vec3& home, double limit);
     bool mend();
     void take_note();
     void find_neighbours(VertexId v);
@@ -44,8 +44,8 @@ private:
     VertexMover& mover_;
     std::uint64_t seed_;
 
-    std::vector<TetStore::Corners> bad_;  // made by the chain
-    std::vector<VertexId> touched_;       // by the chain; may repeat
+    std::vector<TetStore::Corners> bad_, bad_before_;  // made by the chain
+    std::vector<VertexId> touched_, touched_before_;  // by the chain; may repeat
     std::vector<VertexId> neighbours_;
     std::vector<TetId> star_;
 };
