@@ -87,7 +87,7 @@ bool Triangulation::grow_in_waves(const Vec3& p, TetId seed, Cavity& cavity) {
         const std::array<TetFace, 4>& around = tets_.across_all(t);
         for (unsigned f = 0; f < 4; ++f) {
             boundary[faces] = {TetFace{t, f}, around[f]};
-            faces += marks[around[f].tet().index()] != in_conflict ? 1 : 0;
+            faces += marks[around[f].tet().index()] != in_conflict ? 1U : 0U;
         }
     }
     cavity.point = p;
