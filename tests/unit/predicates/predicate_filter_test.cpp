@@ -79,7 +79,8 @@ TEST(PredicateFilter, NeverErrsWithTheTightestBox) {
             ASSERT_EQ(filter.insphere_perturbed(a, b, c, d, e), insphere_perturbed(a, b, c, d, e));
             const Padded padded[4] = {{a}, {b}, {c}, {d}};
             double value[4];
-            filter.insphere_values_of({&padded[0].point}, std::array{RecordNumbers{0, 1, 2, 3}}, e, value);
+            const std::array<RecordNumbers, 1> corners{{{0, 1, 2, 3}}};
+            filter.insphere_values_of({&padded[0].point}, corners, e, value);
             ASSERT_EQ(filter.insphere_perturbed_of_value(value[0], {&a, &b, &c, &d}, e), insphere_perturbed(a, b, c, d, e)) << describe(q, family.name, i);
             ASSERT_EQ(filter.insphere_perturbed_padded(padded[0].point, padded[1].point, padded[2].point, padded[3].point, e), insphere_perturbed(a, b, c, d, e))
                 << describe(q, family.name, i);
