@@ -23,9 +23,12 @@ inline TetStore::Corners canonical_corners(const TetStore::Corners& c) {
     const auto end = c[3] == kInfiniteVertex ? c.begin() + 3 : c.end();
     const auto& row = kToFront[static_cast<std::size_t>(std::max_element(c.begin(), end) - c.begin())];
     const VertexId first = c[row[0]], x = c[row[1]], y = c[row[2]], z = c[row[3]];
-    if (c[3] == kInfiniteVertex || (x < y && x < z)) return {first, x, y, z};
-    if (y < z) return {first, y, z, x};
-    return {first, z, x, y};
+    if (c[3] == kInfiniteVertex) return {first, x, y, z};
+    // Which one is the smallest can't be foreseen: no branch.
+    const VertexId least = std::min(x, std::min(y, z));
+    const std::array<VertexId, 5> round{x, y, z, x, y};
+    const std::size_t at = (y == least ? 1U : 0U) + (z == least ? 2U : 0U);
+    return {first, round[at], round[at + 1], round[at + 2]};
 }
 
 /// Calls visit(place, tetrahedron, canonical corners) for all live tetrahedra, or all finite ones: place 0, 1, ... in the order of their canonical corners.
@@ -62,24 +65,35 @@ void visit_in_canonical_order(const TetStore& tets, std::size_t vertices, Worker
     workers.for_ranges(vertices, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         constexpr std::size_t kFew = 24;
         std::vector<Entry> mine;
+        std::array<std::uint32_t, kFew> place{};
         for (std::size_t v = begin; v < end; ++v) {
-            const std::uint32_t first = v == 0 ? 0 : start[v - 1];
-            mine.clear();
-            for (std::uint32_t i = first; i < start[v]; ++i) {
+            const std::uint32_t first = v == 0 ? 0 : start[v - 1], count = start[v] - first;
+            mine.resize(std::max<std::size_t>(mine.size(), count));
+            for (std::uint32_t i = 0; i < count; ++i) {
                 constexpr std::uint32_t kAhead = 24;
-                if (i + kAhead < total) tets.prefetch(dealt[i + kAhead]);
-                const TetStore::Corners c = canonical_corners(tets.corners(dealt[i]));
-                const Entry e{std::uint64_t{c[1].value()} << 32 | c[2].value(), c[3], dealt[i]};
-                mine.push_back(e);
-                if (mine.size() > kFew) continue;
-                std::size_t at = mine.size() - 1;
-                for (; at > 0 && mine[at - 1].key > e.key; --at) mine[at] = mine[at - 1];
-                mine[at] = e;
+                const TetId t = dealt[first + i];
+                if (first + i + kAhead < total) tets.prefetch(dealt[first + i + kAhead]);
+                const TetStore::Corners c = canonical_corners(tets.corners(t));
+                mine[i] = {std::uint64_t{c[1].value()} << 32 | c[2].value(), c[3], t};
             }
-            if (mine.size() > kFew) std::sort(mine.begin(), mine.end(), [](const Entry& p, const Entry& q) { return p.key < q.key; });
-            for (std::size_t i = 0; i < mine.size(); ++i) {
+            const bool few = count <= kFew;
+            if (few) {  // all pairs are compared, without branches
+                for (std::uint32_t i = 0; i < count; ++i) {
+                    std::uint32_t before = 0;
+                    for (std::uint32_t k = 0; k < i; ++k) {
+                        const std::uint32_t less = mine[k].key < mine[i].key ? 1 : 0;
+                        before += less;
+                        place[k] += 1 - less;
+                    }
+                    place[i] = before;
+                }
+            } else {
+                std::sort(mine.begin(), mine.begin() + count, [](const Entry& p, const Entry& q) { return p.key < q.key; });
+            }
+            for (std::uint32_t i = 0; i < count; ++i) {
                 const Entry& e = mine[i];
-                visit(first + i, e.tet, TetStore::Corners{VertexId{v}, VertexId{static_cast<std::uint32_t>(e.key >> 32)}, VertexId{static_cast<std::uint32_t>(e.key)}, e.fourth});
+                visit(std::size_t{first} + (few ? place[i] : i), e.tet,
+                      TetStore::Corners{VertexId{v}, VertexId{static_cast<std::uint32_t>(e.key >> 32)}, VertexId{static_cast<std::uint32_t>(e.key)}, e.fourth});
             }
         }
     });

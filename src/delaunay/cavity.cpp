@@ -13,7 +13,7 @@ void Triangulation::ensure_marks() {
 
 void Triangulation::next_epoch() {
     ensure_marks();
-    if (epoch_ > std::numeric_limits<std::uint32_t>::max() - 4) {
+    if (epoch_ > kLastEpoch) {
         std::fill(mark_.begin(), mark_.end(), 0U);
         epoch_ = 0;
     }
@@ -55,7 +55,7 @@ bool Triangulation::search_conflict_cavity(const Vec3& p, TetId near, Cavity& ca
             cavity.duplicate = v;
             return false;
         }
-    return grow_conflict_cavity(p, seed, cavity, [](const BoundaryFace&) { return true; });
+    return grow_in_waves<false>(p, seed, cavity);
 }
 
 }  // namespace wellmesh

@@ -93,6 +93,7 @@ Triangulation Triangulation::view_of_zone(std::uint8_t zone, std::uint8_t* zone_
     out.vertices_ = vertices_.view();
     out.mark_ = mark_.view();
     out.epoch_ = epoch_;
+    out.stamp_ = stamp_;
     out.zone_of_tet_ = zone_of_tet;
     out.zone_ = zone;
     return out;
@@ -129,7 +130,7 @@ void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId s
             refused.push_back(i);
             continue;
         }
-        if (!grow_cavity<true>(p, at, cavity, [](const BoundaryFace&) { return true; }) || tets_.room() + cavity.tets.size() < cavity.boundary.size()) {
+        if (!grow_in_waves<true>(p, at, cavity) || tets_.room() + cavity.tets.size() < cavity.boundary.size()) {
             left.push_back(i);
             continue;
         }
@@ -148,6 +149,7 @@ std::vector<std::uint32_t> Triangulation::insert_one_by_one(std::span<const std:
     std::vector<std::uint32_t> left;
     Cavity cavity;
     TetId near = last_located_;
+    renew_stamps(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
         if (observer && k % kBetweenQuestions == 0 && !observer->may_go_on()) {
             left.insert(left.end(), order.begin() + static_cast<std::ptrdiff_t>(k), order.end());
@@ -194,36 +196,42 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
         std::vector<std::uint32_t> order, left, refused;
         std::vector<TetId> slots;
         TetId seed{};
-        std::uint32_t epoch = 0;
+        std::uint32_t epoch = 0, stamp = 0;
         std::vector<Duplicate> duplicates;
         TetStore store;
     };
     std::vector<Zone> team(zones);
-    for (const std::uint32_t i : order) team[tree.zone_of(point(VertexId{i}))].order.push_back(i);
+    SharedArray<std::uint8_t> zone_of_vertex, zone_of_tet;
+    zone_of_vertex.resize_as_is(vertices_.size());
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    workers.for_ranges(vertices_.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) zone_of_vertex[i] = tree.zone_of(vertices_[i].point);
+    });
+    for (Zone& z : team) z.order.reserve(order.size() / zones + order.size() / (8 * zones));
+    for (const std::uint32_t i : order) team[zone_of_vertex[i]].order.push_back(i);
 
+    const std::size_t old_slots = tets_.slots();
     for (Zone& z : team) {
         // An insertion makes 6.77 tetrahedra more in random points.
         z.slots = tets_.take_slots(7 * z.order.size() + 1000);
     }
-    if (epoch_ > std::numeric_limits<std::uint32_t>::max() / 2) {
+    if (epoch_ > kLastEpoch / 2) {
         std::fill(mark_.begin(), mark_.end(), 0U);
         epoch_ = 0;
     }
-    mark_.resize(std::max(mark_.size(), tets_.slots()), 0);
+    if (const std::size_t marked = mark_.size(); marked < tets_.slots()) {
+        mark_.resize_as_is(tets_.slots());
+        workers.for_ranges(tets_.slots() - marked, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) { std::fill(&mark_[marked] + begin, &mark_[marked] + end, 0U); });
+    }
+    renew_stamps(order.size());
     if (observer) {
         observer->make_room(tets_.slots());
         observer->split(zones);
     }
 
-    SharedArray<std::uint8_t> zone_of_vertex, zone_of_tet;
-    zone_of_vertex.resize_as_is(vertices_.size());
     zone_of_tet.resize_as_is(tets_.slots());
-    constexpr std::size_t kGrain = std::size_t{1} << 14;
-    workers.for_ranges(vertices_.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) zone_of_vertex[i] = tree.zone_of(vertices_[i].point);
-    });
-    std::vector<std::array<TetId, kMostZones>> first((tets_.slots() + kGrain - 1) / kGrain);
-    workers.for_ranges(tets_.slots(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+    std::vector<std::array<TetId, kMostZones>> first((old_slots + kGrain - 1) / kGrain);
+    workers.for_ranges(old_slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         for (std::size_t i = begin; i < end; ++i) {
             const TetStore::Corners& c = tets_.corners(TetId{i});
             zone_of_tet[i] = kNoZone;
@@ -241,10 +249,14 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
     }
 
     workers.for_each(zones, [&](std::size_t z) {
-        for (const TetId t : team[z].slots) zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
+        for (const TetId t : team[z].slots) {
+            zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
+            tets_.empty(t);
+        }
         Triangulation view = view_of_zone(static_cast<std::uint8_t>(z), zone_of_tet.data(), std::move(team[z].slots));
         view.insert_in_zone(team[z].order, team[z].seed, observer ? &observer->for_zone(z) : nullptr, team[z].left, team[z].refused);
         team[z].epoch = view.epoch_;
+        team[z].stamp = view.stamp_;
         team[z].duplicates = std::move(view.duplicates_);
         team[z].store = std::move(view.tets_);
     });
@@ -256,6 +268,7 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
         left.insert(left.end(), z.left.begin(), z.left.end());
         refused.insert(refused.end(), z.refused.begin(), z.refused.end());
         epoch_ = std::max(epoch_, z.epoch);
+        stamp_ = std::max(stamp_, z.stamp);
         duplicates_.insert(duplicates_.end(), z.duplicates.begin(), z.duplicates.end());
         tets_.take_back(z.store);
     }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Changes that add: starting simplex, insertion into a found cavity, bulk insertion.
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "core/check.hpp"
 #include "delaunay/collinear.hpp"
+#include "delaunay/local_numbers.hpp"
 #include "delaunay/spatial_order.hpp"
 #include "delaunay/triangulation.hpp"
 
@@ -44,60 +45,96 @@ void Triangulation::start(VertexId a, VertexId b, VertexId c, VertexId d) {
     last_located_ = inner;
 }
 
-TetId Triangulation::create_tet(std::size_t recycled, const std::vector<TetId>& pool) {
-    return recycled < pool.size() ? pool[recycled] : tets_.allocate();
-}
-
 void Triangulation::clear_local_numbers(std::size_t most) {
     if (local_.size() < most + 2) local_.resize(2 * most + 2);
     local_[0] = kInfiniteVertex;
     local_count_ = 1;
 }
 
-/// Two new tetrahedra meet in a face (v, x, y) iff their boundary faces share the edge xy, which they list in opposite directions: a table
-/// over pairs of local numbers, usually 4 kB and so in the first-level cache, finds the partner without a search.
+/// Makes sure that there is a stamp for each of so many insertions, if there can be.
+void Triangulation::renew_stamps(std::size_t insertions) {
+    if (stamp_ + insertions <= StampedNumbers::kLastStamp) return;
+    for (Vertex& v : vertices_) v.local = 0;
+    stamp_ = 0;
+}
+
+/// Reads the boundary, all of it before any tetrahedron is overwritten: new ones take the ids of deleted ones. A ghost's face is turned until infinity comes last.
 ///
-/// New tetrahedron i is (f0, f1, f2, v) for the boundary face (f0, f1, f2), so that its face k is the one opposite to f_k. At the hull
-/// the face is turned until infinity is f2; (f0, f1, inf, v) is positive, hence so is (f1, f0, v, inf).
-template <bool kOnHull, bool kByTable>
-void Triangulation::create_new_tets(VertexId v, const Cavity& cavity) {
+/// Two new tetrahedra meet in a face (v, x, y) iff their boundary faces share the edge xy, which they list in opposite directions: a table over pairs of numbers
+/// finds the partner without a search. What it uses stays in the first-level cache.
+template <class Numbers>
+void Triangulation::read_faces(const Cavity& cavity, Numbers numbers) {
+    constexpr std::uint32_t kStride = Numbers::kMost;
+    Vertex* const vertices = vertices_.data();
+    const auto number = [&](VertexId v) { return numbers(v, vertices[v.index()].local); };
+    if (edge_table_.size() < std::size_t{kStride} * kStride) edge_table_.resize(std::size_t{kStride} * kStride);
+    // Nothing here makes these move.
+    TetFace* const edges = edge_table_.data();
+    NewFace* const faces = faces_.data();
+    const TetId* const tets = new_tets_.data();
+    const BoundaryFace* const boundary = cavity.boundary.data();
     const std::size_t n = faces_.size();
-    const std::size_t stride = kByTable ? std::max<std::size_t>(32, std::bit_ceil(std::size_t{local_count_})) : 1;
-    if (edge_table_.size() < stride * stride) edge_table_.resize(stride * stride);
-    // Without a table all edges share a cell: whatever it holds is replaced by join_by_sorting().
-    const auto cell = [stride](std::uint32_t x, std::uint32_t y) { return kByTable ? x * stride + y : 0; };
-    auto face_number = [](const NewFace& f, unsigned k) -> unsigned {
-        if (!kOnHull || f.corners[2] != kInfiniteVertex) return k;
-        constexpr std::array<std::uint8_t, 3> kGhostFace{1, 0, 3};
-        return kGhostFace[k];
-    };
     for (std::size_t i = 0; i < n; ++i) {
-        const TetId t = create_tet(i, cavity.tets);
-        new_tets_[i] = t;
-        const NewFace& f = faces_[i];
-        const auto [a, b, c] = f.local;
-        edge_table_[cell(b, c)] = TetFace{t, face_number(f, 0)};
-        edge_table_[cell(c, a)] = TetFace{t, face_number(f, 1)};
-        edge_table_[cell(a, b)] = TetFace{t, face_number(f, 2)};
+        const TetStore::Corners& of = tets_.corners(boundary[i].inside.tet());
+        const auto& at = kFaceCorners[boundary[i].inside.face()];
+        VertexId x = of[at[0]], y = of[at[1]], z = of[at[2]];
+        std::uint32_t a = 0, b = 0, c = 0, ghost = 0;
+        if (of[3] == kInfiniteVertex && (x == kInfiniteVertex || y == kInfiniteVertex || z == kInfiniteVertex)) [[unlikely]] {
+            while (z != kInfiniteVertex) z = std::exchange(x, std::exchange(y, z));
+            a = number(x);
+            b = number(y);
+            ghost = 1;
+        } else {
+            a = number(x);
+            b = number(y);
+            c = number(z);
+        }
+        const std::uint32_t row_a = a * kStride, row_b = b * kStride, row_c = c * kStride;
+        faces[i] = {{x, y, z}, {row_c + b, row_a + c, row_b + a}, boundary[i].outside};
+        const TetId t = tets[i];
+        edges[row_b + c] = TetFace{t, 0 ^ ghost};  // of a ghost (f1, f0, v, inf): see set_new_tets()
+        edges[row_c + a] = TetFace{t, 1 ^ ghost};
+        edges[row_a + b] = TetFace{t, 2 ^ ghost};
     }
+}
+
+/// Large cavities, where the table would not stay in any near cache.
+void Triangulation::read_faces_only(const Cavity& cavity) {
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+        auto corners = tets_.face_corners(cavity.boundary[i].inside);
+        while (corners[0] == kInfiniteVertex || corners[1] == kInfiniteVertex) corners = {corners[1], corners[2], corners[0]};
+        faces_[i] = {corners, {0, 0, 0}, cavity.boundary[i].outside};
+    }
+    if (edge_table_.empty()) edge_table_.resize(1);  // whatever it holds is replaced by join_by_sorting()
+}
+
+/// New tetrahedron i is (f0, f1, f2, v) for the boundary face (f0, f1, f2), so that its face k is the one opposite to f_k; (f0, f1, inf, v) is positive, hence so
+/// is (f1, f0, v, inf).
+void Triangulation::set_new_tets(VertexId v) {
+    const TetFace* const edges = edge_table_.data();
+    const NewFace* const faces = faces_.data();
+    const TetId* const tets = new_tets_.data();
+    Vertex* const vertices = vertices_.data();
+    const std::size_t n = faces_.size();
+    TetId home{};
     for (std::size_t i = 0; i < n; ++i) {
-        const NewFace& f = faces_[i];
-        const TetId t = new_tets_[i];
-        const auto [a, b, c] = f.local;
-        const TetFace across0 = edge_table_[cell(c, b)], across1 = edge_table_[cell(a, c)], across2 = edge_table_[cell(b, a)];
-        if (kOnHull && f.corners[2] == kInfiniteVertex) {
+        const NewFace& f = faces[i];
+        const TetId t = tets[i];
+        const TetFace across0 = edges[f.edges[0]], across1 = edges[f.edges[1]], across2 = edges[f.edges[2]];
+        if (f.corners[2] == kInfiniteVertex) [[unlikely]] {
             tets_.set(t, {f.corners[1], f.corners[0], v, kInfiniteVertex}, {across1, across0, f.outside, across2});
             tets_.set_across(f.outside, TetFace{t, 2});
             continue;
         }
         tets_.set(t, {f.corners[0], f.corners[1], f.corners[2], v}, {across0, across1, across2, f.outside});
         tets_.set_across(f.outside, TetFace{t, 3});
-        for (const VertexId x : f.corners) vertices_[x.index()].tet = t;
-        vertices_[v.index()].tet = t;
+        for (const VertexId x : f.corners) vertices[x.index()].tet = t;
+        home = t;
     }
+    vertices[v.index()].tet = home;
 }
 
-/// Large cavities, where the table would not stay in the cache: sets the adjacencies between new tetrahedra.
+/// Sets the adjacencies between new tetrahedra without a table.
 void Triangulation::join_by_sorting() {
     struct Edge {
         VertexId low, high;
@@ -124,29 +161,18 @@ void Triangulation::join_by_sorting() {
 }
 
 void Triangulation::insert_vertex(VertexId v, const Cavity& cavity) {
-    const std::size_t n = cavity.boundary.size();
+    const std::size_t n = cavity.boundary.size(), recycled = std::min(n, cavity.tets.size());
     faces_.resize(n);
-    new_tets_.resize(n);
-    clear_local_numbers(3 * n);
-    bool on_hull = false;
-    // Read all faces before any tetrahedron is overwritten: new ones take the ids of deleted ones.
-    for (std::size_t i = 0; i < n; ++i) {
-        auto corners = tets_.face_corners(cavity.boundary[i].inside);
-        if (corners[0] == kInfiniteVertex || corners[1] == kInfiniteVertex || corners[2] == kInfiniteVertex) {
-            on_hull = true;
-            while (corners[2] != kInfiniteVertex) corners = {corners[1], corners[2], corners[0]};
-        }
-        faces_[i] = {corners, {local_number(corners[0]), local_number(corners[1]), local_number(corners[2])}, cavity.boundary[i].outside};
-    }
-    constexpr std::size_t kLargestTable = 128;
-    if (local_count_ > kLargestTable) {
-        create_new_tets<true, false>(v, cavity);
-        join_by_sorting();
-    } else if (on_hull) {
-        create_new_tets<true, true>(v, cavity);
-    } else {
-        create_new_tets<false, true>(v, cavity);
-    }
+    new_tets_.assign(cavity.tets.begin(), cavity.tets.begin() + static_cast<std::ptrdiff_t>(recycled));
+    while (new_tets_.size() < n) new_tets_.push_back(tets_.allocate());
+    // The boundary is a sphere of triangles: n / 2 + 2 vertices; and 0 is taken.
+    const std::size_t numbers = n / 2 + 3;
+    constexpr std::uint32_t kMany = 128;
+    if (numbers <= StampedNumbers::kMost && stamp_ < StampedNumbers::kLastStamp) [[likely]] read_faces(cavity, StampedNumbers(++stamp_));
+    else if (numbers <= kMany) read_faces(cavity, ListedNumbers<kMany>());
+    else read_faces_only(cavity);
+    set_new_tets(v);
+    if (numbers > kMany) join_by_sorting();
     for (std::size_t i = n; i < cavity.tets.size(); ++i) tets_.release(cavity.tets[i]);
     last_located_ = new_tets_[0];
 }
@@ -188,8 +214,11 @@ bool Triangulation::insert_all(std::span<const Vec3> points, const Checkpoint& c
 
 bool Triangulation::insert_all_in_order(std::span<const Vec3> points, std::span<const std::uint32_t> order, Workers& workers) {
     vertices_.clear();
-    vertices_.reserve(points.size());
-    for (const std::uint32_t i : order) vertices_.push_back({points[i]});
+    vertices_.resize_as_is(order.size());
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    workers.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) vertices_[i] = Vertex{points[order[i]]};
+    });
     std::vector<std::uint32_t> identity(order.size());
     std::iota(identity.begin(), identity.end(), 0U);
     if (!start_from(identity)) return false;

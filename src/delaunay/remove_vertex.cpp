@@ -183,7 +183,7 @@ void Triangulation::remove_vertex(const Hole& hole) {
     outside_.clear();
     for (const BoundaryFace& b : hole.boundary) outside_.push_back(b.outside);
     for (std::size_t i = 0; i < hole.filling.size(); ++i) {
-        const TetId t = create_tet(i, hole.star);
+        const TetId t = i < hole.star.size() ? hole.star[i] : tets_.allocate();
         new_tets_.push_back(t);
         tets_.set_corners(t, hole.filling[i]);
     }

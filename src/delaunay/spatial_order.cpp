@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "core/rng.hpp"
 #include "delaunay/spatial_order.hpp"
@@ -54,6 +56,28 @@ std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x) {
     return key;
 }
 
+using Keyed = std::pair<std::uint64_t, std::uint32_t>;
+
+/// Sorts by keys, equal ones staying in order: digit by digit from the last one, for it branches on nothing.
+void sort_by_key(std::span<Keyed> run) {
+    constexpr unsigned kDigitBits = 11, kDigits = (64 + kDigitBits - 1) / kDigitBits;
+    constexpr std::size_t kValues = std::size_t{1} << kDigitBits;
+    const auto digit_of = [](std::uint64_t key, unsigned d) { return static_cast<std::size_t>(key >> (d * kDigitBits)) % kValues; };
+    std::vector<std::array<std::uint32_t, kValues>> place(kDigits);
+    for (const Keyed& k : run)
+        for (unsigned d = 0; d < kDigits; ++d) ++place[d][digit_of(k.first, d)];
+    std::vector<Keyed> other(run.size());
+    std::span<Keyed> from = run, to = other;
+    for (unsigned d = 0; d < kDigits; ++d) {
+        if (!run.empty() && place[d][digit_of(run[0].first, d)] == run.size()) continue;  // the same everywhere
+        std::uint32_t total = 0;
+        for (std::uint32_t& p : place[d]) total += std::exchange(p, total);
+        for (const Keyed& k : from) to[place[d][digit_of(k.first, d)]++] = k;
+        std::swap(from, to);
+    }
+    if (from.data() != run.data()) std::copy(from.begin(), from.end(), run.begin());
+}
+
 /// Points by the round that `round_of` puts them in (below 16), then along the curve.
 template <class RoundOf>
 std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, Workers& workers, RoundOf&& round_of) {
@@ -67,7 +91,6 @@ std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, Workers
     const double extent = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
     const double scale = extent > 0 ? static_cast<double>((1U << kBits) - 1) / extent : 0;
     constexpr std::uint64_t kRoundShift = 3 * kBits;
-    using Keyed = std::pair<std::uint64_t, std::uint32_t>;
     std::vector<Keyed> keyed(n);
     // Each worker sorts a run; then neighbouring runs are merged, in rounds.
     std::size_t run = (n + workers.threads() - 1) / workers.threads();
@@ -78,7 +101,7 @@ std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, Workers
                                                     static_cast<std::uint32_t>((p.z - lo.z) * scale)};
             keyed[i] = {(std::uint64_t{round_of(i)} << kRoundShift) | hilbert_key(cell), static_cast<std::uint32_t>(i)};
         }
-        std::sort(keyed.begin() + static_cast<std::ptrdiff_t>(begin), keyed.begin() + static_cast<std::ptrdiff_t>(end));
+        sort_by_key({keyed.data() + begin, end - begin});
     });
     for (; run < n; run *= 2)
         workers.for_ranges(n, 2 * run, [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -38,10 +38,7 @@ std::vector<TetId> TetStore::take_slots(std::size_t count) {
     const std::size_t more = count - out.size(), first = tet_.size();
     if (first + more > kMaxTets) refuse_size();
     tet_.resize_as_is(first + more);
-    for (std::size_t i = more; i-- > 0;) {
-        out.push_back(TetId{first + i});  // the last one is taken first
-        tet_[first + i].corner[0] = VertexId{};
-    }
+    for (std::size_t i = more; i-- > 0;) out.push_back(TetId{first + i});  // the last one is taken first
     return out;
 }
 

@@ -90,8 +90,9 @@ public:
     // --- views, for several workers at once (Triangulation::insert_in_zones)
     /// The same tetrahedra, with `slots` free ones of its own: take_slots() made them. Valid until this store grows.
     [[nodiscard]] TetStore view(std::vector<TetId> slots);
-    /// Slots that are on no free list any more, new ones at the end if there are not as many free. @throws as allocate()
+    /// Slots that are on no free list any more, new ones at the end if there are not as many free: these hold anything. @throws as allocate()
     [[nodiscard]] std::vector<TetId> take_slots(std::size_t count);
+    void empty(TetId t) { tet_[t.index()].corner[0] = VertexId{}; }
     /// How many tetrahedra a view can still hold.
     [[nodiscard]] std::size_t room() const { return free_.size(); }
     /// Takes over what a view has left.

@@ -21,6 +21,7 @@
 #include "core/ids.hpp"
 #include "core/shared_array.hpp"
 #include "core/workers.hpp"
+#include "delaunay/local_numbers.hpp"
 #include "delaunay/tet_store.hpp"
 #include "predicates/predicates.hpp"
 #include "wellmesh/vec3.hpp"
@@ -183,7 +184,7 @@ private:
     struct alignas(32) Vertex {
         Vec3 point;
         TetId tet{};
-        std::uint32_t local = 0;  ///< place in local_, if that holds this vertex: scratch of one operation
+        std::uint32_t local = 0;  ///< its number in one operation (local_numbers.hpp)
     };
     static_assert(sizeof(Vertex) == 32);
 
@@ -194,10 +195,12 @@ private:
             __builtin_prefetch(mark_.data() + n.index());
         }
     }
-    TetId create_tet(std::size_t recycled, const std::vector<TetId>& pool);
     void ensure_marks();
     void next_epoch();
     bool search_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity);
+    template <bool kZoned>
+    bool grow_in_waves(const Vec3& p, TetId seed, Cavity& cavity);
+    void decide_wave(const Vec3& p, std::size_t candidates);
     template <bool kZoned, class Accept>
     bool grow_cavity(const Vec3& p, TetId seed, Cavity& cavity, const Accept& accept);
     template <bool kZoned>
@@ -219,16 +222,20 @@ private:
     std::uint32_t local_number(VertexId v) {
         if (v == kInfiniteVertex) return 0;
         // Whether a vertex is new can't be foreseen: no branch. There is room for one number too many.
-        std::uint32_t& number = vertices_[v.index()].local;
-        const std::uint32_t known = std::min(number, local_count_);
+        std::uint32_t& word = vertices_[v.index()].local;
+        const std::uint32_t known = std::min(word & ~kUnstamped, local_count_);
         const bool is_new = known == local_count_ || local_[known] != v;
-        number = is_new ? local_count_ : known;
+        const std::uint32_t number = is_new ? local_count_ : known;
+        word = kUnstamped | number;
         local_[number] = v;
         local_count_ += is_new ? 1 : 0;
         return number;
     }
-    template <bool kOnHull, bool kByTable>
-    void create_new_tets(VertexId v, const Cavity& cavity);
+    template <class Numbers>
+    void read_faces(const Cavity& cavity, Numbers numbers);
+    void renew_stamps(std::size_t insertions);
+    void read_faces_only(const Cavity& cavity);
+    void set_new_tets(VertexId v);
     void join_by_sorting();
 
     TetStore tets_;
@@ -243,17 +250,25 @@ private:
     // scratch
     SharedArray<std::uint32_t> mark_;  // per tet: epoch_ visited and not in conflict, epoch_ + 1 in conflict
     std::uint32_t epoch_ = 0;
+    static constexpr std::uint32_t kLastEpoch = std::numeric_limits<std::int32_t>::max() - 4;  // differences of epochs have a sign
+    struct Wave {  // grow_in_waves()
+        std::vector<TetId> taken, candidates;
+        std::vector<RecordNumbers> corners;
+        std::vector<double> values;
+        std::vector<BoundaryFace> boundary;
+    } wave_;
     std::vector<TetId> new_tets_;
     std::vector<TetId> star_stack_;
     struct NewFace {
         std::array<VertexId, 3> corners;
-        std::array<std::uint32_t, 3> local;
+        std::array<std::uint32_t, 3> edges;  // in edge_table_, as the neighbours list them
         TetFace outside;
     };
     std::vector<NewFace> faces_;
     std::vector<TetFace> outside_;
     std::vector<VertexId> local_;
     std::uint32_t local_count_ = 0;
+    std::uint32_t stamp_ = 0;  // of the last numbers: no vertex's word has a greater one
     std::vector<TetFace> edge_table_;
     mutable TetId last_located_{};
     std::uint8_t* zone_of_tet_ = nullptr;

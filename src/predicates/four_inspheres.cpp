@@ -2,6 +2,9 @@
 // InsphereFormula over four quintuples of points, one a lane.
 #include "predicates/four_inspheres.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 #define WELLMESH_HAS_AVX2_TARGET 1
@@ -55,9 +58,41 @@ struct LanesOfPoints {
     return result;
 }
 
+namespace {
+
+// The same with fused operations.
+[[gnu::target("avx2,fma"), gnu::always_inline]] inline __m256d fused_minor_of(const LanesOfPoints& p, const LanesOfPoints& q) {
+    return _mm256_fmsub_pd(p.x, q.y, _mm256_mul_pd(q.x, p.y));
+}
+[[gnu::target("avx2,fma"), gnu::always_inline]] inline __m256d fused_minor_of(const LanesOfPoints& p, const LanesOfPoints& q, const LanesOfPoints& r, __m256d qr, __m256d pr, __m256d pq) {
+    return _mm256_fmadd_pd(r.z, pq, _mm256_fmsub_pd(p.z, qr, _mm256_mul_pd(q.z, pr)));
+}
+[[gnu::target("avx2,fma"), gnu::always_inline]] inline __m256d fused_lift_of(const LanesOfPoints& p) {
+    return _mm256_fmadd_pd(p.z, p.z, _mm256_fmadd_pd(p.y, p.y, _mm256_mul_pd(p.x, p.x)));
+}
+
+}  // namespace
+
+[[gnu::target("avx2,fma")]] void insphere_values_of_records(PointRecords points, std::span<const RecordNumbers> tets, const Vec3& e, double* values) noexcept {
+    const __m256d ex = _mm256_set1_pd(e.x), ey = _mm256_set1_pd(e.y), ez = _mm256_set1_pd(e.z);
+    const std::size_t last = tets.size() - 1;
+    for (std::size_t i = 0; i <= last; i += 4) {
+        const RecordNumbers &t0 = tets[i], &t1 = tets[std::min(i + 1, last)], &t2 = tets[std::min(i + 2, last)], &t3 = tets[std::min(i + 3, last)];
+        const auto row = [&](std::size_t k) __attribute__((always_inline, target("avx2,fma"))) { return differences(points[t0[k]], points[t1[k]], points[t2[k]], points[t3[k]], ex, ey, ez); };
+        const LanesOfPoints a = row(0), b = row(1), c = row(2), d = row(3);
+        const __m256d ab = fused_minor_of(a, b), ac = fused_minor_of(a, c), ad = fused_minor_of(a, d), bc = fused_minor_of(b, c), bd = fused_minor_of(b, d), cd = fused_minor_of(c, d);
+        const __m256d abc = fused_minor_of(a, b, c, bc, ac, ab), abd = fused_minor_of(a, b, d, bd, ad, ab);
+        const __m256d acd = fused_minor_of(a, c, d, cd, ad, ac), bcd = fused_minor_of(b, c, d, cd, bd, bc);
+        const __m256d ab_part = _mm256_fmsub_pd(fused_lift_of(a), bcd, _mm256_mul_pd(fused_lift_of(b), acd));
+        const __m256d cd_part = _mm256_fmsub_pd(fused_lift_of(c), abd, _mm256_mul_pd(fused_lift_of(d), abc));
+        _mm256_storeu_pd(values + i, _mm256_add_pd(ab_part, cd_part));
+    }
+}
+
 #else
 
 std::array<double, 4> four_insphere_values(const std::array<std::array<const Vec3*, 4>, 4>&, const Vec3&) noexcept { return {}; }
+void insphere_values_of_records(PointRecords, std::span<const RecordNumbers>, const Vec3&, double*) noexcept {}
 
 #endif
 

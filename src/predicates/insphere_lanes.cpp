@@ -13,7 +13,7 @@ namespace wellmesh {
 #ifdef WELLMESH_HAS_AVX2_TARGET
 
 bool has_insphere_lanes() noexcept {
-    static const bool has = __builtin_cpu_supports("avx2") != 0;
+    static const bool has = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
     return has;
 }
 

@@ -9,7 +9,7 @@
 
 namespace wellmesh {
 
-/// Whether insphere_value_in_lanes may be called: x86-64 with AVX2.
+/// Whether insphere_value_in_lanes may be called: x86-64 with AVX2 and FMA.
 [[nodiscard]] bool has_insphere_lanes() noexcept;
 
 /// InsphereFormula::value of the rounded differences to e, with the same number of roundings in every monomial, so that the

@@ -69,6 +69,12 @@ public:
             return insphere_values_in_lanes(spheres, e, values);
         for (std::size_t i = 0; i < spheres.size(); ++i) values[i] = insphere_value(*spheres[i][0], *spheres[i][1], *spheres[i][2], *spheres[i][3], e);
     }
+    /// The same for corners by number; there is room for three values more.
+    void insphere_values_of(PointRecords points, std::span<const RecordNumbers> tets, const Vec3& e, double* values) const {
+        if (has_lanes_) [[likely]]
+            return insphere_values_of_records(points, tets, e, values);
+        for (std::size_t i = 0; i < tets.size(); ++i) values[i] = insphere_value(points[tets[i][0]], points[tets[i][1]], points[tets[i][2]], points[tets[i][3]], e);
+    }
     /// The sign that insphere_perturbed has, given the rounded determinant.
     [[nodiscard]] Sign insphere_perturbed_of_value(double value, const SphereCorners& s, const Vec3& e) const {
         if (value > insphere_bound_) return Sign::positive;

@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <vector>
 
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/check_delaunay.hpp"
+#include "delaunay/local_numbers.hpp"
 
 namespace wellmesh {
 namespace {
@@ -208,6 +211,48 @@ TEST(Triangulation, JoinsAVertexWithThousandsOfNeighbours) {
     points.push_back(mesh.point(centre));
     EXPECT_EQ(tets_of(mesh), tets_of(triangulate(points)));
     EXPECT_EQ(check_delaunay(mesh), "");
+}
+
+/// Around a centre: cavities on both sides of what each kind of numbers and table is for (local_numbers.hpp).
+TEST(Triangulation, JoinsVerticesWithAnyNumberOfNeighbours) {
+    for (const std::size_t around : {50U, 61U, 62U, 63U, 100U, 125U, 126U, 127U, 200U}) {
+        std::vector<Vec3> points;
+        for (std::uint64_t i = 0; points.size() < around; ++i) {
+            const Vec3 p{2 * unit_double(mix64(around, 3 * i)) - 1, 2 * unit_double(mix64(around, 3 * i + 1)) - 1, 2 * unit_double(mix64(around, 3 * i + 2)) - 1};
+            if (squared_norm(p) > 0.1 && squared_norm(p) <= 1) points.push_back((1 / norm(p)) * p);
+        }
+        Triangulation mesh = triangulate(points);
+        const VertexId centre = mesh.add_point({1e-3, -2e-3, 1e-3});
+        Cavity cavity;
+        ASSERT_TRUE(mesh.find_conflict_cavity(mesh.point(centre), mesh.tet_of(VertexId{1}), cavity));
+        mesh.insert_vertex(centre, cavity);
+        EXPECT_EQ(mesh.new_tets().size(), 2 * around - 4);
+        points.push_back(mesh.point(centre));
+        EXPECT_EQ(tets_of(mesh), tets_of(triangulate(points)));
+        EXPECT_EQ(check_adjacency(mesh) + check_delaunay(mesh), "");
+    }
+}
+
+/// Whatever their words hold, vertices get 1, 2, 3, ... as they come.
+template <class Numbers>
+void expect_numbers_in_order(Numbers numbers, std::uint64_t seed) {
+    std::vector<std::uint32_t> words(Numbers::kMost - 2);
+    // Stamped numbers from before, and numbers that aren't stamped.
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] = static_cast<std::uint32_t>(mix64(seed, i) % (7 * StampedNumbers::kMost)) | (i % 3 == 0 ? kUnstamped : 0);
+    std::map<std::size_t, std::uint32_t> expected;
+    for (std::uint64_t k = 0; k < 6 * Numbers::kMost; ++k) {
+        const std::size_t v = mix64(seed + 1, k) % words.size();
+        const auto number = expected.try_emplace(v, static_cast<std::uint32_t>(expected.size()) + 1).first->second;
+        ASSERT_EQ(numbers(VertexId{v}, words[v]), number);
+    }
+}
+
+TEST(LocalNumbers, AreGivenInOrderOfFirstMention) {
+    for (std::uint64_t seed = 0; seed < 200; seed += 2) {
+        expect_numbers_in_order(StampedNumbers(7), seed);
+        expect_numbers_in_order(StampedNumbers(StampedNumbers::kLastStamp), seed);
+        expect_numbers_in_order(ListedNumbers<128>(), seed);
+    }
 }
 
 TEST(Triangulation, FindsEdgesAndFaces) {

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "ladder_check.hpp"
 #include "oracle/rational_predicates.hpp"
@@ -39,6 +41,25 @@ TEST(PredicateFilter, LanesComputeTheSamePolynomial) {
     }
 }
 
+/// The same for corners by number, and for any number of tetrahedra.
+TEST(PredicateFilter, RecordsComputeTheSamePolynomial) {
+    const PredicateFilter filter;
+    for (std::uint64_t i = 0; i < 2'000; ++i) {
+        Random r(401, i);
+        std::array<Padded, 12> p;
+        for (Padded& q : p) q.point = r.point([&] { return std::floor(64 * r.unit()); });
+        std::vector<RecordNumbers> tets(1 + i % 9);
+        for (RecordNumbers& t : tets)
+            for (std::uint32_t& corner : t) corner = static_cast<std::uint32_t>(11 * r.unit());
+        std::vector<double> values(tets.size() + 3);
+        filter.insphere_values_of({&p[0].point}, tets, p[11].point, values.data());
+        for (std::size_t k = 0; k < tets.size(); ++k) {
+            const auto& [a, b, c, d] = tets[k];
+            ASSERT_EQ(values[k], PredicateFilter::insphere_value(p[a].point, p[b].point, p[c].point, p[d].point, p[11].point));
+        }
+    }
+}
+
 TEST(PredicateFilter, NeverErrsWithTheTightestBox) {
     int cases = 0, orient3d_decided = 0, insphere_decided = 0;
     std::uint64_t stream = 200;
@@ -57,6 +78,10 @@ TEST(PredicateFilter, NeverErrsWithTheTightestBox) {
             ASSERT_EQ(filter.insphere(a, b, c, d, e), side.sign);
             ASSERT_EQ(filter.insphere_perturbed(a, b, c, d, e), insphere_perturbed(a, b, c, d, e));
             const Padded padded[4] = {{a}, {b}, {c}, {d}};
+            double value[4];
+            const std::array<RecordNumbers, 1> corners{{{0, 1, 2, 3}}};
+            filter.insphere_values_of({&padded[0].point}, corners, e, value);
+            ASSERT_EQ(filter.insphere_perturbed_of_value(value[0], {&a, &b, &c, &d}, e), insphere_perturbed(a, b, c, d, e)) << describe(q, family.name, i);
             ASSERT_EQ(filter.insphere_perturbed_padded(padded[0].point, padded[1].point, padded[2].point, padded[3].point, e), insphere_perturbed(a, b, c, d, e))
                 << describe(q, family.name, i);
             ++cases;
