@@ -26,7 +26,7 @@ public:
             for (std::size_t k = 0; k < share; ++k) {
                 if (free.empty()) {
                     free.push_back(static_cast<std::uint32_t>(mesh_.records_.size()));
-                    mesh_.records_.emplace_back();
+                    mesh_.records_.push_back(TetLabels{});
                 }
                 part.records_.push_back(free.back());
                 free.pop_back();
@@ -82,7 +82,7 @@ private:
     void put(TetId t, const TetLabels& labels) {
         if (pool().empty()) {  // of the whole: a part's were counted
             pool().push_back(static_cast<std::uint32_t>(mesh_.records_.size()));
-            mesh_.records_.emplace_back();
+            mesh_.records_.push_back(TetLabels{});
         }
         mesh_.record_[t.index()] = pool().back();
         mesh_.records_[pool().back()] = labels;
@@ -142,9 +142,12 @@ void ConformingMesh::renumber_tets(Workers& workers) {
     for (std::size_t i = 0; i < record_.size() && i < tets.slots(); ++i)
         if (record_[i] != 0 && tets.is_live(TetId{i})) labelled[record_[i]] = tets.corners(TetId{i});
     const std::vector<TetId> old_of = tri_.renumber(workers);
-    std::vector<CellId> cells(old_of.size());
-    std::vector<std::uint32_t> records(old_of.size());
-    std::vector<TetLabels> ordered(records_.size());
+    SharedArray<CellId> cells;
+    SharedArray<std::uint32_t> records;
+    SharedArray<TetLabels> ordered;
+    cells.resize_as_is(old_of.size());
+    records.resize_as_is(old_of.size());
+    ordered.resize(records_.size(), TetLabels{});
     workers.for_ranges(old_of.size(), std::size_t{1} << 15, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
             const TetId t{i};
