@@ -42,9 +42,10 @@ private:
         double limit = 0;
     };
     using Frame = std::array<Vec3, 3>;
-    /// Rotations, but for a factor of three.
-    static constexpr std::array<Frame, 3> kFrames{{{Vec3{3, 0, 0}, Vec3{0, 3, 0}, Vec3{0, 0, 3}},
+    /// Orthogonal, each of one length.
+    static constexpr std::array<Frame, 4> kFrames{{{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}},
                                                    {Vec3{2, 2, 1}, Vec3{-2, 1, 2}, Vec3{1, -2, 2}},
+                                                   {Vec3{2, 3, 6}, Vec3{3, -6, 2}, Vec3{6, 2, -3}},
                                                    {Vec3{2, -1, 2}, Vec3{2, 2, -1}, Vec3{-1, 2, 2}}}};
 
     [[nodiscard]] Vec3 turned(const Vec3& p) const { return {dot(frame_[0], p), dot(frame_[1], p), dot(frame_[2], p)}; }

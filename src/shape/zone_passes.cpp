@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -13,13 +14,13 @@
 namespace wellmesh {
 namespace {
 
-/// Thinner zones are mostly limits.
-constexpr std::size_t kLeastTetsAZone = 1 << 15;
+/// So many tetrahedra are worth two zones, four times as many worth four, and so on: small zones are mostly limits.
+constexpr double kTetsOfTwoZones = 1 << 15;
 /// Cutting and joining costs some ten nanoseconds a tetrahedron, a move some ten microseconds.
-constexpr std::size_t kTetsPerWork = 512;
+constexpr std::size_t kTetsPerWork = 2048;
 constexpr std::size_t kLeastBadAZone = 64, kLeastVerticesAZone = 256;
 constexpr std::size_t kSampleAZone = 512;
-constexpr unsigned kTurns = 3;
+constexpr unsigned kTurns = 4;
 
 }  // namespace
 
@@ -73,10 +74,11 @@ private:
     std::vector<std::unique_ptr<Member>> members_;
 };
 
-std::size_t ZonePasses::zones_for(std::size_t work, std::size_t least_a_zone) const {
+std::size_t ZonePasses::zones_for(std::size_t work, std::size_t least_a_zone, unsigned turn) const {
     const std::size_t tets = mesh_.tets().live();
     if (work < tets / kTetsPerWork) return 0;
-    return std::bit_floor(std::min({work / least_a_zone, tets / kLeastTetsAZone, Zones::kMost}));
+    const std::size_t most = std::bit_floor(std::min({work / least_a_zone, static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(tets) / kTetsOfTwoZones)), Zones::kMost}));
+    return most < 2 ? 0 : std::max<std::size_t>(2, most >> turn);
 }
 
 RunGuard::Verdict ZonePasses::mend(unsigned samples) {
@@ -84,7 +86,7 @@ RunGuard::Verdict ZonePasses::mend(unsigned samples) {
     RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), mending_.count());
     for (unsigned turn = 0; turn < kTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
         std::vector<Bad>& waiting = mending_.waiting();
-        const std::size_t count = zones_for(waiting.size(), kLeastBadAZone);
+        const std::size_t count = zones_for(waiting.size(), kLeastBadAZone, turn);
         if (count < 2) break;
         std::vector<Vec3> sample;
         const std::size_t step = std::max<std::size_t>(1, waiting.size() / (kSampleAZone * count));
@@ -107,7 +109,7 @@ RunGuard::Verdict ZonePasses::smooth(std::vector<VertexId>& vertices, double flo
     // Moves change no number of vertices: whether there are too many does not depend on who asks first.
     RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), mending_.count());
     for (unsigned turn = 0; turn < kTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
-        const std::size_t count = zones_for(vertices.size(), kLeastVerticesAZone);
+        const std::size_t count = zones_for(vertices.size(), kLeastVerticesAZone, turn);
         if (count < 2) break;
         std::vector<Vec3> sample;
         const std::size_t step = std::max<std::size_t>(1, vertices.size() / (kSampleAZone * count));

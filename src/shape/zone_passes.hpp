@@ -30,8 +30,8 @@ public:
 
 private:
     class Team;
-    /// Into how many zones is so much work worth being cut? Below 2: into none.
-    [[nodiscard]] std::size_t zones_for(std::size_t work, std::size_t least_a_zone) const;
+    /// Into how many zones is so much work worth being cut? 0: into none. Less in later turns, as more zones have more limits.
+    [[nodiscard]] std::size_t zones_for(std::size_t work, std::size_t least_a_zone, unsigned turn) const;
 
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;
