@@ -176,8 +176,11 @@ bool Triangulation::find_hole(VertexId v, Hole& hole, std::size_t most_tets) {
     hole.vertex = v;
     if (!find_star(v, hole.star) || hole.star.size() > most_tets) return false;
     if (is_view())
-        for (const TetId t : hole.star)
-            if (!may_enter<true>(tets_.across(t, tets_.find_corner(t, v)).tet())) return false;
+        for (const TetId t : hole.star) {
+            // Whether a ghost is in conflict may be asked of the tetrahedron behind it: as when v is put back.
+            const TetId n = tets_.across(t, tets_.find_corner(t, v)).tet();
+            if (!may_enter<true>(n) || (tets_.is_ghost(n) && !may_enter<true>(tets_.across(n, 3).tet()))) return false;
+        }
     return HoleFiller(*this, hole).fill();
 }
 

@@ -72,18 +72,19 @@ void Mending::collect(Workers& workers) {
     blocks_ = Blocks(mesh_.triangulation().low(), mesh_.triangulation().high(), mesh_.tets().live());
     heap_.clear();
     left_.clear();
-    std::vector<std::vector<Bad>> found((slots + kGrain - 1) / kGrain);
-    const auto look = [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        double how = 0;
-        for (std::size_t i = begin; i < end; ++i)
-            if (is_bad(TetId{i}, how)) found[piece].push_back(listed(TetId{i}, how));
-    };
-    if (goes_beyond_shape) {  // which searches the mesh
-        for (std::size_t piece = 0; piece < found.size(); ++piece) look(piece * kGrain, std::min(slots, (piece + 1) * kGrain), piece);
-    } else {
-        workers.for_ranges(slots, kGrain, look);
-    }
-    for (const std::vector<Bad>& piece : found) left_.insert(left_.end(), piece.begin(), piece.end());
+    // What goes beyond shape searches the mesh: not for several threads at once. It matters to few.
+    std::vector<std::vector<TetId>> suspects((slots + kGrain - 1) / kGrain);
+    workers.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const TetId t{i};
+            if (!judge_.counts(t) || (judge_.is_surely_good(t) && (!goes_beyond_shape || judge_.keeps_radius_edge(t)))) continue;
+            suspects[piece].push_back(t);
+        }
+    });
+    double how = 0;
+    for (const std::vector<TetId>& piece : suspects)
+        for (const TetId t : piece)
+            if (is_bad(t, how)) left_.push_back(listed(t, how));
 }
 
 void Mending::touch(const std::vector<TetId>& tets) {

@@ -17,13 +17,12 @@ namespace {
 struct Improved {
     StagedMesh staged;
     Refiner refiner;
-    Workers workers;
     ShapeImprover improver;
 
     Improved(const Plc& plc, const MeshOptions& options)
         : staged(plc, options),
           refiner(staged.mesh, staged.boundary, staged.guard, staged.options),
-          improver(staged.mesh, staged.boundary, refiner, staged.guard, workers, options.seed) {
+          improver(staged.mesh, staged.boundary, refiner, staged.guard, staged.workers, options.seed) {
         staged.conform();
         EXPECT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
     }
