@@ -56,7 +56,7 @@ bool Chains::all_is_well() {
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     for (const VertexId v : touched_) {
         if (!mesh_.triangulation().is_inserted(v)) continue;
-        mesh_.triangulation().find_star(v, star_);
+        if (!mesh_.triangulation().find_star(v, star_)) return false;
         for (const TetId t : star_)
             if (boundary_.has_encroached(t) || misses(t)) return false;
     }
@@ -69,6 +69,7 @@ bool Chains::mend() {
     for (std::size_t done = 0; done < bad_.size(); ++done) {  // bad_ grows meanwhile
         const TetStore::Corners corners = bad_[done];
         TetId t = find_tet(mesh_, corners);
+        if (mesh_.triangulation().left_zone()) return false;
         if (!t.valid() || judge_.shape_badness(t) <= judge_.goal()) continue;
         if (++moves > kMovesInChain || bad_.size() > kMostBadInChain) return false;
         bool moved = false;
@@ -89,7 +90,7 @@ bool Chains::attempt(Chain&& chain) {
     bad_.clear();
     touched_.clear();
     log.begin();
-    if (chain()) {
+    if (chain() && !mesh_.triangulation().left_zone()) {
         log.keep();
         return true;
     }
@@ -109,9 +110,11 @@ bool Chains::merge(VertexId v, VertexId into, const Vec3& home, double limit) {
 bool Chains::dissolve(VertexId v) {
     const double limit = rough(judge_);
     if (attempt([&] { return mover_.remove(v, limit) && (take_note(), mend()); })) return true;
+    if (mesh_.triangulation().left_zone()) return false;
     find_neighbours(v);
     const Vec3 home = mesh_.point(v);
-    return std::any_of(neighbours_.begin(), neighbours_.end(), [&](VertexId w) { return attempt([&] { return merge(v, w, home, limit); }); });
+    return std::any_of(neighbours_.begin(), neighbours_.end(),
+                       [&](VertexId w) { return !mesh_.triangulation().left_zone() && attempt([&] { return merge(v, w, home, limit); }); });
 }
 
 bool Chains::shove(VertexId v, unsigned trials) {

@@ -22,6 +22,8 @@ public:
     /// Tetrahedra that a chain may leave as they are although they miss the goal. Empty: none.
     std::function<bool(TetId)> tolerates{};
 
+    /// In a view of a zone: what fails because it would have left the zone is undone, and the view says so.
+
     /// Takes v out; if that alone does not do, a neighbour on the same segment or facet, or in the same cell, closes up.
     /// @return whether it is gone; every tetrahedron around is as good as the goal then, and nothing is encroached.
     bool dissolve(VertexId v);

@@ -45,9 +45,9 @@ public:
           mover_(mesh, boundary, judge_, seed),
           insertion_(mesh, boundary, judge_, seed),
           chains_(mesh, boundary, judge_, mover_, seed),
-          thinning_(mesh, guard, chains_),
           mending_(mesh, judge_, mover_),
-          zones_(mesh, boundary, guard, workers, judge_, mover_, mending_) {
+          zones_(mesh, boundary, guard, workers, judge_, mover_, mending_),
+          thinning_(mesh, guard, chains_, &zones_) {
         mending_.goes_beyond_shape = refiner.knows_forced();
         mending_.badness = [this](TetId t) {
             const double how = badness_of(t);
@@ -98,9 +98,9 @@ private:
     VertexMover mover_;
     BestInsertion insertion_;
     Chains chains_;
-    Thinning thinning_;
     Mending mending_;
     ZonePasses zones_;
+    Thinning thinning_;
 
     bool leaves_forced_ = false;
     std::uint64_t splits_ = 0;

@@ -10,6 +10,7 @@
 
 #include "core/shared_guard.hpp"
 #include "delaunay/zones.hpp"
+#include "shape/chains.hpp"
 
 namespace wellmesh {
 namespace {
@@ -21,6 +22,7 @@ constexpr std::size_t kTetsPerWork = 2048;
 constexpr std::size_t kLeastBadAZone = 64, kLeastVerticesAZone = 256;
 constexpr std::size_t kSampleAZone = 512;
 constexpr unsigned kTurns = 4;
+constexpr unsigned kThinningTurns = 2;  // vertices along the limits may as well stay
 
 }  // namespace
 
@@ -40,12 +42,15 @@ public:
         Member(const Member&) = delete;
         Member& operator=(const Member&) = delete;
 
+        [[nodiscard]] bool is_star_good(VertexId v);
+
         ConformingMesh& mesh;
         BoundaryRefiner boundary;
         TetJudge judge;
         VertexMover mover;
         Mending mending;
         std::vector<VertexId> vertices, waiting;
+        std::vector<TetId> star;
     };
 
     Team(ZonePasses& whole, const Zones& zones) : whole_(whole), views_(whole.mesh_.split(whole.workers_, zones, parts_)) {
@@ -105,20 +110,55 @@ RunGuard::Verdict ZonePasses::mend(unsigned samples) {
     return verdict;
 }
 
+/// Gives each zone its vertices, in their order, and leaves those that wait afterwards.
+template <class Work>
+RunGuard::Verdict ZonePasses::share_out(std::vector<VertexId>& vertices, std::size_t zones, unsigned turn, const Work& work) {
+    std::vector<Vec3> sample;
+    const std::size_t step = std::max<std::size_t>(1, vertices.size() / (kSampleAZone * zones));
+    for (std::size_t k = 0; k < vertices.size(); k += step) sample.push_back(mesh_.point(vertices[k]));
+    Team team(*this, Zones(std::move(sample), zones, turn));
+    for (const VertexId v : vertices) team[team.zone_of(v)].vertices.push_back(v);
+    vertices.clear();
+    const RunGuard::Verdict verdict = team.run(work);
+    for (std::size_t z = 0; z < zones; ++z) vertices.insert(vertices.end(), team[z].waiting.begin(), team[z].waiting.end());
+    return verdict;
+}
+
 RunGuard::Verdict ZonePasses::smooth(std::vector<VertexId>& vertices, double floor) {
-    // Moves change no number of vertices: whether there are too many does not depend on who asks first.
     RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), mending_.count());
     for (unsigned turn = 0; turn < kTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
+        const std::size_t zones = zones_for(vertices.size(), kLeastVerticesAZone, turn);
+        if (zones < 2) break;
+        verdict = share_out(vertices, zones, turn, [&](Team::Member& m, const Mending::MayGoOn& may_go_on) { m.mending.smooth(m.vertices, floor, m.waiting, may_go_on); });
+    }
+    return verdict;
+}
+
+/// Of a star that a vertex may be taken out of: what an acute angle excuses is known to the whole mesh only.
+bool ZonePasses::Team::Member::is_star_good(VertexId v) {
+    if (!mesh.triangulation().find_star(v, star)) return false;
+    return std::none_of(star.begin(), star.end(), [&](TetId t) { return judge.counts(t) && !judge.is_surely_good(t) && judge.shape_badness(t) > judge.goal(); });
+}
+
+RunGuard::Verdict ZonePasses::dissolve(std::vector<VertexId>& vertices, std::size_t most) {
+    RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), most);
+    for (unsigned turn = 0; turn < kThinningTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
         const std::size_t count = zones_for(vertices.size(), kLeastVerticesAZone, turn);
-        if (count < 2) break;
-        std::vector<Vec3> sample;
-        const std::size_t step = std::max<std::size_t>(1, vertices.size() / (kSampleAZone * count));
-        for (std::size_t k = 0; k < vertices.size(); k += step) sample.push_back(mesh_.point(vertices[k]));
-        Team team(*this, Zones(std::move(sample), count, turn));
-        for (const VertexId v : vertices) team[team.zone_of(v)].vertices.push_back(v);
-        vertices.clear();
-        verdict = team.run([&](Team::Member& m, const Mending::MayGoOn& may_go_on) { m.mending.smooth(m.vertices, floor, m.waiting, may_go_on); });
-        for (std::size_t z = 0; z < count; ++z) vertices.insert(vertices.end(), team[z].waiting.begin(), team[z].waiting.end());
+        if (count < 2 || most < count) break;
+        const std::size_t before = mesh_.vertex_count();
+        verdict = share_out(vertices, count, turn, [&](Team::Member& m, const Mending::MayGoOn& may_go_on) {
+            Triangulation& tri = m.mesh.triangulation();
+            Chains chains(m.mesh, m.boundary, m.judge, m.mover, boundary_.seed());
+            std::size_t gone = 0;
+            for (const VertexId v : m.vertices) {
+                if (!may_go_on(m.vertices.size())) return;
+                if (gone >= most / count) break;
+                tri.forget_leaving();
+                if (m.is_star_good(v) && chains.dissolve(v)) ++gone;
+                else if (tri.left_zone() || !m.is_star_good(v)) m.waiting.push_back(v);
+            }
+        });
+        most -= std::min(most, before - mesh_.vertex_count());
     }
     return verdict;
 }

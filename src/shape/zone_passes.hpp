@@ -28,10 +28,16 @@ public:
     /// The same with vertices that are to be smoothed; those that are not done stay, in some order.
     RunGuard::Verdict smooth(std::vector<VertexId>& vertices, double floor);
 
+    /// Takes superfluous vertices out of a list (Chains::dissolve), about as many as `most`; those that are not tried stay in it, in some order.
+    RunGuard::Verdict dissolve(std::vector<VertexId>& vertices, std::size_t most);
+
 private:
     class Team;
     /// Into how many zones is so much work worth being cut? 0: into none. Less in later turns, as more zones have more limits.
     [[nodiscard]] std::size_t zones_for(std::size_t work, std::size_t least_a_zone, unsigned turn) const;
+
+    template <class Work>
+    RunGuard::Verdict share_out(std::vector<VertexId>& vertices, std::size_t zones, unsigned turn, const Work& work);
 
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;
