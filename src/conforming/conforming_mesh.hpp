@@ -182,7 +182,7 @@ public:
     void undo_removal(VertexId v, const Placement& where, const Snapshot& before, std::span<const TetId> filling = {});
 
     // --- zones, for several workers at once (delaunay/zones.hpp)
-    /// Views of zones, in which vertices move or go, and no more. Until they are joined the whole must not be touched.
+    /// Views of zones, in which vertices move, and no more. Until they are joined the whole must not be touched.
     [[nodiscard]] std::vector<ConformingMesh> split(Workers& workers, const Zones& zones, ZoneViews& parts);
     /// Takes over what the views changed, in their order.
     void join(std::vector<ConformingMesh>& views);

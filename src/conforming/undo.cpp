@@ -91,7 +91,7 @@ void ConformingMesh::undo_insertion(VertexId v, const Placement& where, const Sn
 void ConformingMesh::undo_removal(VertexId v, const Placement& where, const Snapshot& before, std::span<const TetId> filling) {
     // Whatever is in the hole is in conflict with v: then no walk is needed, which might leave a view's zone.
     const auto known = std::find_if(filling.begin(), filling.end(), [&](TetId t) { return tri_.in_conflict(t, point(v)); });
-    const TetId seed = known != filling.end() ? *known : tri_.find_conflict(point(v), tri_.new_tets()[0]);
+    const TetId seed = known != filling.end() ? *known : tri_.locate(point(v), tri_.new_tets()[0]);
     WELLMESH_CHECK(Stage::shape, seed.valid() && tri_.grow_conflict_cavity(point(v), seed, undo_cavity_, [](const BoundaryFace&) { return true; }));
     for (const TetId t : undo_cavity_.tets) drop_labels(t);
     tri_.insert_vertex(v, undo_cavity_);

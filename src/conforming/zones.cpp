@@ -42,10 +42,8 @@ std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones&
 }
 
 void ConformingMesh::join(std::vector<ConformingMesh>& views) {
-    const std::size_t before = vertex_count_;
     for (ConformingMesh& view : views) {
-        WELLMESH_CHECK(Stage::shape, view.vertex_count_ <= before && !view.has_broken() && view.forgotten_.empty());
-        vertex_count_ -= before - view.vertex_count_;
+        WELLMESH_CHECK(Stage::shape, view.vertex_count_ == vertex_count_ && !view.has_broken() && view.forgotten_.empty());
         tri_.join(view.tri_);
         free_records_.insert(free_records_.end(), view.free_records_.begin(), view.free_records_.end());
     }

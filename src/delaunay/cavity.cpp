@@ -34,16 +34,6 @@ bool Triangulation::in_conflict(TetId t, const Vec3& p) const {
     return filter_.insphere_perturbed_padded(point(c[0]), point(c[1]), point(c[2]), point(c[3]), p) == Sign::positive;
 }
 
-TetId Triangulation::find_conflict(const Vec3& p, TetId near) const {
-    const bool had_left = left_zone_;
-    const TetId t = locate(p, near);
-    if (t.valid()) return t;
-    left_zone_ = had_left;
-    for (std::size_t i = 0; i < tets_.slots(); ++i)
-        if (is_mine(TetId{i}) && tets_.is_live(TetId{i}) && (!tets_.is_ghost(TetId{i}) || is_mine(tets_.across(TetId{i}, 3).tet())) && in_conflict(TetId{i}, p)) return TetId{i};
-    return {};
-}
-
 bool Triangulation::find_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity) {
     if (!in_box(p)) {  // the filter's bounds do not hold: do without it
         constexpr double kInfinity = std::numeric_limits<double>::infinity();

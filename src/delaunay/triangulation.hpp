@@ -130,8 +130,6 @@ public:
     /// The tetrahedron that contains p, or a ghost whose hull face p lies strictly beyond.
     [[nodiscard]] TetId locate(const Vec3& p, TetId hint) const;
     [[nodiscard]] bool in_conflict(TetId t, const Vec3& p) const;
-    /// Some tetrahedron in conflict with p. Of a view: one that is known to be in the zone is found even if the way there leads out of it.
-    [[nodiscard]] TetId find_conflict(const Vec3& p, TetId near) const;
     /// All tetrahedra in conflict with p. @param near  where to start walking.
     /// @return false, with cavity.duplicate set, if there is a vertex at p; or if the search left the zone.
     bool find_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity);

@@ -17,6 +17,21 @@ namespace {
 constexpr double kFlatRadiusEdge = 1e6;
 constexpr double kFlatVolume = 1e-10;  // of the cubed longest edge: dihedral angles of about 1e-8 degrees
 
+/// Are all corners on one facet? For four input vertices, which lie on many, the answer is always yes.
+bool is_within_facet(const ConformingMesh& mesh, const TetStore::Corners& corners) {
+    const auto carrier_at = [&](VertexId v) { return mesh.info(v).carrier; };
+    if (std::any_of(corners.begin(), corners.end(), [&](VertexId v) { return carrier_at(v) == CarrierKind::region; })) return false;
+    const auto holds_all = [&](FacetId f) { return std::all_of(corners.begin(), corners.end(), [&](VertexId v) { return mesh.is_on_facet(v, f); }); };
+    for (const VertexId v : corners)
+        if (carrier_at(v) == CarrierKind::facet) return holds_all(FacetId{mesh.info(v).carrier_id});
+    for (const VertexId v : corners)
+        if (carrier_at(v) == CarrierKind::segment) {
+            const std::vector<FacetId>& facets = mesh.plc().segments[mesh.info(v).carrier_id].facets;
+            return std::any_of(facets.begin(), facets.end(), holds_all);
+        }
+    return true;
+}
+
 }  // namespace
 
 /// No tetrahedron is flat here: where rounding blurs the circumsphere it is computed exactly.
@@ -54,10 +69,10 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
     const double squared_radius = squared_norm(n) / (4 * six_volume * six_volume);
     const double squared_edge = std::min({lu, lv, lw, squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
     squared_badness = squared_radius;
-    // No thicker than what rounding does to points of one facet: its circumsphere is noise, however ordinary it looks.
+    // No thicker than what rounding does to points of one facet: its circumsphere is noise, however ordinary it looks. Elsewhere points are where they are.
     const double squared_longest = std::max({lu, lv, lw, squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
     const double longest = std::sqrt(squared_longest);
-    if (!(six_volume > std::max(kFlatVolume * longest, rounding_) * squared_longest)) {
+    if (!(six_volume > kFlatVolume * longest * squared_longest) || (!(six_volume > rounding_ * squared_longest) && is_within_facet(mesh_, corners))) {
         squared_badness = std::numeric_limits<double>::infinity();
         return Fault::flat;
     }

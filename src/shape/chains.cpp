@@ -56,7 +56,7 @@ bool Chains::all_is_well() {
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     for (const VertexId v : touched_) {
         if (!mesh_.triangulation().is_inserted(v)) continue;
-        if (!mesh_.triangulation().find_star(v, star_)) return false;
+        mesh_.triangulation().find_star(v, star_);
         for (const TetId t : star_)
             if (boundary_.has_encroached(t) || misses(t)) return false;
     }
@@ -69,7 +69,6 @@ bool Chains::mend() {
     for (std::size_t done = 0; done < bad_.size(); ++done) {  // bad_ grows meanwhile
         const TetStore::Corners corners = bad_[done];
         TetId t = find_tet(mesh_, corners);
-        if (mesh_.triangulation().left_zone()) return false;
         if (!t.valid() || judge_.shape_badness(t) <= judge_.goal()) continue;
         if (++moves > kMovesInChain || bad_.size() > kMostBadInChain) return false;
         bool moved = false;
@@ -90,7 +89,7 @@ bool Chains::attempt(Chain&& chain) {
     bad_.clear();
     touched_.clear();
     log.begin();
-    if (chain() && !mesh_.triangulation().left_zone()) {
+    if (chain()) {
         log.keep();
         return true;
     }
@@ -98,10 +97,8 @@ bool Chains::attempt(Chain&& chain) {
     return false;
 }
 
-/// Takes v out and draws a neighbour towards the gap, where nothing may get worse than `limit` before moves mend it.
-bool Chains::merge(VertexId v, VertexId into, const Vec3& home, double limit) {
-    if (!mover_.drop(v)) return false;
-    take_note();
+/// Draws a neighbour towards the gap, where nothing may get worse than `limit` before moves mend it.
+bool Chains::close_up(VertexId into, const Vec3& home, double limit) {
     if (!mover_.pull(into, home, limit)) return false;
     take_note();
     return mend();
@@ -109,12 +106,25 @@ bool Chains::merge(VertexId v, VertexId into, const Vec3& home, double limit) {
 
 bool Chains::dissolve(VertexId v) {
     const double limit = rough(judge_);
-    if (attempt([&] { return mover_.remove(v, limit) && (take_note(), mend()); })) return true;
-    if (mesh_.triangulation().left_zone()) return false;
-    find_neighbours(v);
     const Vec3 home = mesh_.point(v);
-    return std::any_of(neighbours_.begin(), neighbours_.end(),
-                       [&](VertexId w) { return !mesh_.triangulation().left_zone() && attempt([&] { return merge(v, w, home, limit); }); });
+    find_neighbours(v);
+    return attempt([&] {
+        if (!mover_.drop(v)) return false;
+        const bool fits = mover_.fits_without(limit);
+        take_note();
+        // Most of the time goes into taking v out: once for all that may follow.
+        ChangeLog& log = mover_.log();
+        const std::size_t steps = log.size();
+        bad_before_ = bad_;
+        touched_before_ = touched_;
+        if (fits && mend()) return true;
+        return std::any_of(neighbours_.begin(), neighbours_.end(), [&](VertexId w) {
+            log.undo_after(mesh_, steps);
+            bad_ = bad_before_;
+            touched_ = touched_before_;
+            return close_up(w, home, limit);
+        });
+    });
 }
 
 bool Chains::shove(VertexId v, unsigned trials) {

@@ -22,8 +22,6 @@ public:
     /// Tetrahedra that a chain may leave as they are although they miss the goal. Empty: none.
     std::function<bool(TetId)> tolerates{};
 
-    /// In a view of a zone: what fails because it would have left the zone is undone, and the view says so.
-
     /// Takes v out; if that alone does not do, a neighbour on the same segment or facet, or in the same cell, closes up.
     /// @return whether it is gone; every tetrahedron around is as good as the goal then, and nothing is encroached.
     bool dissolve(VertexId v);
@@ -33,7 +31,7 @@ public:
 private:
     template <class Chain>
     bool attempt(Chain&& chain);
-    bool merge(VertexId v, VertexId into, const Vec3& home, double limit);
+    bool close_up(VertexId into, const Vec3& home, double limit);
     bool mend();
     void take_note();
     void find_neighbours(VertexId v);
@@ -46,8 +44,8 @@ private:
     VertexMover& mover_;
     std::uint64_t seed_;
 
-    std::vector<TetStore::Corners> bad_;  // made by the chain
-    std::vector<VertexId> touched_;       // by the chain; may repeat
+    std::vector<TetStore::Corners> bad_, bad_before_;  // made by the chain
+    std::vector<VertexId> touched_, touched_before_;  // by the chain; may repeat
     std::vector<VertexId> neighbours_;
     std::vector<TetId> star_;
 };

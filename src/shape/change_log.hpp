@@ -29,8 +29,13 @@ public:
     void keep() { open_ = false; }
     /// Undoes the steps since begin(). @pre nothing else has changed the mesh since
     void undo(ConformingMesh& mesh) {
+        undo_after(mesh, 0);
         open_ = false;
-        for (; !steps_.empty(); steps_.pop_back()) {
+    }
+    [[nodiscard]] std::size_t size() const { return steps_.size(); }
+    /// Undoes all but the first `kept` steps, and stays open.
+    void undo_after(ConformingMesh& mesh, std::size_t kept) {
+        for (; steps_.size() > kept; steps_.pop_back()) {
             const Step& step = steps_.back();
             if (!step.removed) mesh.undo_insertion(step.vertex, step.where, step.cavity);
             mesh.triangulation().set_point(step.vertex, step.home);

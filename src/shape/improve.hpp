@@ -47,7 +47,7 @@ public:
           chains_(mesh, boundary, judge_, mover_, seed),
           mending_(mesh, judge_, mover_),
           zones_(mesh, boundary, guard, workers, judge_, mover_, mending_),
-          thinning_(mesh, guard, chains_, &zones_) {
+          thinning_(mesh, guard, chains_) {
         mending_.goes_beyond_shape = refiner.knows_forced();
         mending_.badness = [this](TetId t) {
             const double how = badness_of(t);

@@ -1,28 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shape/thin_out.hpp"
 
-#include <algorithm>
-#include <vector>
-
 namespace wellmesh {
 namespace {
 
 constexpr std::size_t kTrialsPerExcess = 30;  // of old vertices, for each vertex that is too many: on large meshes not all can be tried
+constexpr std::size_t kFirstTrials = 1000;      // that may fail before that proportion is asked of the vertices that went, too
 constexpr double kWorthRepeating = 0.02;      // of the vertices must go in a sweep for another to be tried
 
 }  // namespace
 
 RunGuard::Verdict Thinning::sweep(std::size_t first, std::size_t enough, std::size_t trials) {
-    std::vector<VertexId> vertices;
-    for (std::size_t v = mesh_.vertex_slots(); v-- > first && vertices.size() < trials;)
-        if (mesh_.triangulation().is_inserted(VertexId{v})) vertices.push_back(VertexId{v});
-    RunGuard::Verdict verdict = zones_ ? zones_->dissolve(vertices, mesh_.vertex_count() - std::min(mesh_.vertex_count(), enough)) : RunGuard::Verdict::go_on;
-    for (std::size_t i = 0; i < vertices.size() && mesh_.vertex_count() > enough && verdict == RunGuard::Verdict::go_on; ++i) {
-        if (!mesh_.triangulation().is_inserted(vertices[i])) continue;
-        verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), mesh_.vertex_count() - enough);
-        if (verdict == RunGuard::Verdict::go_on) chains_.dissolve(vertices[i]);
+    const std::size_t before = mesh_.vertex_count();
+    for (std::size_t v = mesh_.vertex_slots(), tried = 0; v-- > first && mesh_.vertex_count() > enough && trials > 0;) {
+        if (!mesh_.triangulation().is_inserted(VertexId{v})) continue;
+        const RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), mesh_.vertex_count() - enough);
+        if (verdict != RunGuard::Verdict::go_on) return verdict;
+        chains_.dissolve(VertexId{v});
+        --trials;
+        if (++tried > kFirstTrials + kTrialsPerExcess * (before - mesh_.vertex_count())) break;
     }
-    return verdict;
+    return RunGuard::Verdict::go_on;
 }
 
 RunGuard::Verdict Thinning::run(std::size_t first_new, std::size_t enough) {

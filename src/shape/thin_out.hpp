@@ -9,14 +9,12 @@
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
 #include "shape/chains.hpp"
-#include "shape/zone_passes.hpp"
 
 namespace wellmesh {
 
 class Thinning {
 public:
-    /// @param zones  null: all on one thread
-    Thinning(ConformingMesh& mesh, RunGuard& guard, Chains& chains, ZonePasses* zones = nullptr) : mesh_(mesh), guard_(guard), chains_(chains), zones_(zones) {}
+    Thinning(ConformingMesh& mesh, RunGuard& guard, Chains& chains) : mesh_(mesh), guard_(guard), chains_(chains) {}
 
     /// Takes out what can go of the vertices from slot `first_new` on, then of all as long as there are more than `enough`.
     RunGuard::Verdict run(std::size_t first_new, std::size_t enough);
@@ -27,7 +25,6 @@ private:
     ConformingMesh& mesh_;
     RunGuard& guard_;
     Chains& chains_;
-    ZonePasses* zones_;
 };
 
 }  // namespace wellmesh

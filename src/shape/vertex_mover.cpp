@@ -337,9 +337,8 @@ bool VertexMover::smooth(VertexId v, double floor) {
 
 bool VertexMover::remove(VertexId v, double limit) {
     if (!look_at_star(v) || !take_out()) return false;
-    limit = std::max(limit, star_cosine_ - kWorthwhile);
     changed_ = filling_;
-    if (fits(limit)) {
+    if (fits_without(limit)) {
         ++statistics_.removals;
         note(true);
         return true;
@@ -347,6 +346,8 @@ bool VertexMover::remove(VertexId v, double limit) {
     put_back();
     return false;
 }
+
+bool VertexMover::fits_without(double limit) const { return fits(std::max(limit, star_cosine_ - kWorthwhile)); }
 
 bool VertexMover::drop(VertexId v) {
     if (!look_at_star(v) || !take_out()) return false;

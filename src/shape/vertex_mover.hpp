@@ -53,6 +53,8 @@ public:
     /// Takes v out if the mesh conforms without it, whatever its shape and even if something is encroached then. For chains of changes, which
     /// look at that in the end.
     bool drop(VertexId v);
+    /// Would remove() have taken out what drop() just has?
+    [[nodiscard]] bool fits_without(double limit) const;
     /// Moves v part of the way to `target`, to where its star is best, if nothing of it is worse than `limit`.
     bool pull(VertexId v, const Vec3& target, double limit);
     /// Where changes are noted while it is open.

@@ -10,7 +10,6 @@
 
 #include "core/shared_guard.hpp"
 #include "delaunay/zones.hpp"
-#include "shape/chains.hpp"
 
 namespace wellmesh {
 namespace {
@@ -22,7 +21,6 @@ constexpr std::size_t kTetsPerWork = 2048;
 constexpr std::size_t kLeastBadAZone = 64, kLeastVerticesAZone = 256;
 constexpr std::size_t kSampleAZone = 512;
 constexpr unsigned kTurns = 4;
-constexpr unsigned kThinningTurns = 2;  // vertices along the limits may as well stay
 
 }  // namespace
 
@@ -42,15 +40,12 @@ public:
         Member(const Member&) = delete;
         Member& operator=(const Member&) = delete;
 
-        [[nodiscard]] bool is_star_good(VertexId v);
-
         ConformingMesh& mesh;
         BoundaryRefiner boundary;
         TetJudge judge;
         VertexMover mover;
         Mending mending;
         std::vector<VertexId> vertices, waiting;
-        std::vector<TetId> star;
     };
 
     Team(ZonePasses& whole, const Zones& zones) : whole_(whole), views_(whole.mesh_.split(whole.workers_, zones, parts_)) {
@@ -130,35 +125,6 @@ RunGuard::Verdict ZonePasses::smooth(std::vector<VertexId>& vertices, double flo
         const std::size_t zones = zones_for(vertices.size(), kLeastVerticesAZone, turn);
         if (zones < 2) break;
         verdict = share_out(vertices, zones, turn, [&](Team::Member& m, const Mending::MayGoOn& may_go_on) { m.mending.smooth(m.vertices, floor, m.waiting, may_go_on); });
-    }
-    return verdict;
-}
-
-/// Of a star that a vertex may be taken out of: what an acute angle excuses is known to the whole mesh only.
-bool ZonePasses::Team::Member::is_star_good(VertexId v) {
-    if (!mesh.triangulation().find_star(v, star)) return false;
-    return std::none_of(star.begin(), star.end(), [&](TetId t) { return judge.counts(t) && !judge.is_surely_good(t) && judge.shape_badness(t) > judge.goal(); });
-}
-
-RunGuard::Verdict ZonePasses::dissolve(std::vector<VertexId>& vertices, std::size_t most) {
-    RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), most);
-    for (unsigned turn = 0; turn < kThinningTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
-        const std::size_t count = zones_for(vertices.size(), kLeastVerticesAZone, turn);
-        if (count < 2 || most < count) break;
-        const std::size_t before = mesh_.vertex_count();
-        verdict = share_out(vertices, count, turn, [&](Team::Member& m, const Mending::MayGoOn& may_go_on) {
-            Triangulation& tri = m.mesh.triangulation();
-            Chains chains(m.mesh, m.boundary, m.judge, m.mover, boundary_.seed());
-            std::size_t gone = 0;
-            for (const VertexId v : m.vertices) {
-                if (!may_go_on(m.vertices.size())) return;
-                if (gone >= most / count) break;
-                tri.forget_leaving();
-                if (m.is_star_good(v) && chains.dissolve(v)) ++gone;
-                else if (tri.left_zone() || !m.is_star_good(v)) m.waiting.push_back(v);
-            }
-        });
-        most -= std::min(most, before - mesh_.vertex_count());
     }
     return verdict;
 }

@@ -28,9 +28,6 @@ public:
     /// The same with vertices that are to be smoothed; those that are not done stay, in some order.
     RunGuard::Verdict smooth(std::vector<VertexId>& vertices, double floor);
 
-    /// Takes superfluous vertices out of a list (Chains::dissolve), about as many as `most`; those that are not tried stay in it, in some order.
-    RunGuard::Verdict dissolve(std::vector<VertexId>& vertices, std::size_t most);
-
 private:
     class Team;
     /// Into how many zones is so much work worth being cut? 0: into none. Less in later turns, as more zones have more limits.

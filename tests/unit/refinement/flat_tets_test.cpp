@@ -27,5 +27,20 @@ TEST(Refine, FlatTetrahedraAreSplitWhateverTheirRoundedRadius) {
         }
 }
 
+/// Far from the origin any tetrahedron is as thin as coordinates are rounded coarsely; only between points of the boundary does that make it noise.
+TEST(Refine, ThinTetrahedraInsideAreNotFlatFarAway) {
+    MeshOptions options;
+    options.size.edge_length = 0.05;
+    options.limits.max_vertices = 50000;  // against a cascade
+    const auto vertices = [&](double shift) {
+        StagedMesh staged(transformed(cube(), 0, shift, 1), options);
+        staged.conform();
+        Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+        EXPECT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
+        return static_cast<double>(staged.mesh.vertex_count());
+    };
+    EXPECT_NEAR(vertices(1e12) / vertices(0), 1, 0.1);
+}
+
 }  // namespace
 }  // namespace wellmesh::testing
