@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "delaunay/zones.hpp"
+#include "support/acute_plcs.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
 
