@@ -55,7 +55,10 @@ Outcome improved(const Plc& plc, double angle, unsigned threads) {
     for (const auto& [cell, volume] : staged.cell_volumes()) EXPECT_NEAR(volume, volumes.at(cell), 1e-9);
     Outcome out;
     for (std::size_t v = 0; v < staged.mesh.vertex_slots(); ++v) out.points.push_back(staged.mesh.point(VertexId{v}));
-    for (std::size_t t = 0; t < staged.mesh.tets().slots(); ++t) out.tets.push_back(staged.mesh.tets().corners(TetId{t}));
+    for (std::size_t t = 0; t < staged.mesh.tets().slots(); ++t) {
+        const TetId id{t};
+        out.tets.push_back(staged.mesh.tets().is_live(id) ? staged.mesh.tets().corners(id) : TetStore::Corners{});
+    }
     out.moves = improver.statistics().moves;
     return out;
 }
