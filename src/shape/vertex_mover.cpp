@@ -79,7 +79,8 @@ bool VertexMover::has_both_ends() {
 bool VertexMover::look_at_star(VertexId v) {
     if (mesh_.info(v).carrier == CarrierKind::input_vertex || !mesh_.triangulation().is_inserted(v)) return false;
     vertex_ = v;
-    if (!mesh_.has_room_to_move(kMostTets) || !mesh_.triangulation().find_hole(v, hole_, kMostTets) || !find_placement() || !has_both_ends()) return false;
+    if (!mesh_.triangulation().find_hole(v, hole_, kMostTets) || !mesh_.has_room_to_move(std::max(kMostTets, hole_.filling.size()))) return false;
+    if (!find_placement() || !has_both_ends()) return false;
     home_ = mesh_.point(v);
     optimal_ = middle_ = Vec3{};
     star_cosine_ = 0;
