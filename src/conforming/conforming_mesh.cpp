@@ -32,7 +32,7 @@ ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint
     WELLMESH_CHECK(Stage::delaunay, tri_.duplicate_count() == 0);
     on_facet_.resize(plc.facets.size());
     on_segment_.resize(plc.segments.size());
-    info_.resize(points.size());
+    info_.resize(points.size(), VertexInfo{});
     for (std::size_t i = 0; i < plc.vertices.size(); ++i) {
         info_[i].carrier = CarrierKind::input_vertex;
         info_[i].carrier_id = static_cast<std::uint32_t>(i);
@@ -46,7 +46,7 @@ ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint
     }
     vertex_count_ = info_.size();
     facet_labelled_.assign(plc.facets.size(), 0);
-    records_.emplace_back();  // record 0 means none
+    records_.push_back(TetLabels{});  // record 0 means none
     for (const ValidCell& c : plc.cells) filled_.push_back(c.filled ? 1 : 0);
     filled_.push_back(0);
     fit_arrays();
@@ -69,7 +69,7 @@ TetLabels& ConformingMesh::labels_for_writing(TetId t) {
     if (r == 0) {
         if (free_records_.empty()) {
             r = static_cast<std::uint32_t>(records_.size());
-            records_.emplace_back();
+            records_.push_back(TetLabels{});
         } else {
             r = free_records_.back();
             free_records_.pop_back();

@@ -20,6 +20,7 @@
 
 #include "core/checkpoint.hpp"
 #include "core/ids.hpp"
+#include "core/shared_array.hpp"
 #include "delaunay/triangulation.hpp"
 #include "validation/valid_plc.hpp"
 #include "wellmesh/tet_mesh.hpp"
@@ -177,7 +178,18 @@ public:
     /// Undoes insert or reinsert of v; `before` was saved from the cavity's tetrahedra. @param where as it was given then.
     void undo_insertion(VertexId v, const Placement& where, const Snapshot& before);
     /// Undoes remove; `before` was saved from the star of v, which stands at its old point again.
-    void undo_removal(VertexId v, const Placement& where, const Snapshot& before);
+    /// @param filling  live tetrahedra, some of them in the hole; empty: it is searched for
+    void undo_removal(VertexId v, const Placement& where, const Snapshot& before, std::span<const TetId> filling = {});
+
+    // --- zones, for several workers at once (delaunay/zones.hpp)
+    /// Views of zones, in which vertices move, and no more. Until they are joined the whole must not be touched.
+    [[nodiscard]] std::vector<ConformingMesh> split(Workers& workers, const Zones& zones, ZoneViews& parts);
+    /// Takes over what the views changed, in their order.
+    void join(std::vector<ConformingMesh>& views);
+    /// Of a view: is there room to take out one vertex of a star of at most `most_tets` and put it elsewhere? If not, it has left its zone.
+    [[nodiscard]] bool has_room_to_move(std::size_t most_tets) const {
+        return tri_.has_room(2 * most_tets) && (!tri_.is_view() || free_records_.size() >= 2 * most_tets);
+    }
 
     /// Facets and segments that lost a piece since the last call.
     [[nodiscard]] std::vector<FacetId> take_broken_facets();
@@ -224,13 +236,15 @@ private:
     class InsideObserver;
     [[nodiscard]] bool is_segment_edge(VertexId a, VertexId b) const;
 
-    const ValidPlc* plc_;
+    ConformingMesh() = default;  // a view to be
+
+    const ValidPlc* plc_ = nullptr;
     Triangulation tri_;
-    std::vector<VertexInfo> info_;
+    SharedArray<VertexInfo> info_;
     std::size_t vertex_count_ = 0;
-    std::vector<CellId> cell_;
-    std::vector<std::uint32_t> record_;  // index into records_; 0: no labels
-    std::vector<TetLabels> records_;
+    SharedArray<CellId> cell_;
+    SharedArray<std::uint32_t> record_;  // index into records_; 0: no labels
+    SharedArray<TetLabels> records_;
     std::vector<std::uint32_t> free_records_;
     std::vector<char> filled_;  // of each cell; the last entry is the unknown cell's
     std::vector<std::vector<VertexId>> on_facet_;    // Steiner vertices ever inserted on each facet,

@@ -27,7 +27,7 @@ public:
             for (std::size_t k = 0; k < share; ++k) {
                 if (free.empty()) {
                     free.push_back(static_cast<std::uint32_t>(mesh_.records_.size()));
-                    mesh_.records_.emplace_back();
+                    mesh_.records_.push_back(TetLabels{});
                 }
                 part.records_.push_back(free.back());
                 free.pop_back();
@@ -93,7 +93,7 @@ private:
     void put(TetId t, const TetLabels& labels) {
         if (pool().empty()) {  // of the whole: a part's were counted
             pool().push_back(static_cast<std::uint32_t>(mesh_.records_.size()));
-            mesh_.records_.emplace_back();
+            mesh_.records_.push_back(TetLabels{});
         }
         mesh_.record_[t.index()] = pool().back();
         mesh_.records_[pool().back()] = labels;
@@ -155,7 +155,7 @@ void ConformingMesh::renumber_tets(Workers& workers) {
     const auto take_along = [&](auto& values) {
         std::remove_reference_t<decltype(values)> moved;
         moved.reserve(values.capacity());
-        moved.resize(old_of.size());
+        moved.resize_as_is(old_of.size());
         workers.for_ranges(old_of.size(), std::size_t{1} << 15, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) moved[i] = values[old_of[i].index()];
         });

@@ -88,8 +88,11 @@ void ConformingMesh::undo_insertion(VertexId v, const Placement& where, const Sn
     if (where.carrier == CarrierKind::segment) label_edge(where.a, where.b, SegmentId{where.carrier_id});
 }
 
-void ConformingMesh::undo_removal(VertexId v, const Placement& where, const Snapshot& before) {
-    WELLMESH_CHECK(Stage::shape, tri_.find_conflict_cavity(point(v), tri_.new_tets()[0], undo_cavity_));
+void ConformingMesh::undo_removal(VertexId v, const Placement& where, const Snapshot& before, std::span<const TetId> filling) {
+    // Whatever is in the hole is in conflict with v: then no walk is needed, which might leave a view's zone.
+    const auto known = std::find_if(filling.begin(), filling.end(), [&](TetId t) { return tri_.in_conflict(t, point(v)); });
+    const TetId seed = known != filling.end() ? *known : tri_.locate(point(v), tri_.new_tets()[0]);
+    WELLMESH_CHECK(Stage::shape, seed.valid() && tri_.grow_conflict_cavity(point(v), seed, undo_cavity_, [](const BoundaryFace&) { return true; }));
     for (const TetId t : undo_cavity_.tets) drop_labels(t);
     tri_.insert_vertex(v, undo_cavity_);
     ++vertex_count_;

@@ -33,6 +33,8 @@ public:
         polls_ = 0;
         return look(vertices, tets, unmet);
     }
+    /// From any thread.
+    [[nodiscard]] bool is_cancelled() const { return control_->stop.stop_requested(); }
     /// The same for work without which there is no conforming mesh. Once there has been one (set_conforming), what is begun is finished: only the
     /// algorithm's own ceiling ends it then, and whoever polls next learns of the user's limits.
     /// @param where  () -> ElementRef, what is being worked on.

@@ -47,6 +47,8 @@ bool Triangulation::find_conflict_cavity(const Vec3& p, TetId near, Cavity& cavi
 
 bool Triangulation::search_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity) {
     const TetId seed = locate(p, near);
+    cavity.duplicate = VertexId{};
+    if (!seed.valid()) return false;  // of a view: the way left the zone
     for (const VertexId v : tets_.corners(seed))
         if (v != kInfiniteVertex && point(v) == p) {
             cavity.point = p;

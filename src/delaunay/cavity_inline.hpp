@@ -28,9 +28,7 @@ bool Triangulation::grow_cavity(const Vec3& p, TetId seed, Cavity& cavity, const
         std::size_t tests = 0;
         for (const TetFace outside : neighbours) {
             const TetId n = outside.tet();
-            if constexpr (kZoned) {  // another worker may be writing to what is not ours
-                if (!is_mine(n)) return false;
-            }
+            if (!may_enter<kZoned>(n)) return false;  // another worker may be writing to what is not ours
             const std::uint32_t mark = marks[n.index()];
             if (mark == taken || mark == kept) continue;
             const TetStore::Corners& c = tets_.corners(n);
@@ -48,9 +46,7 @@ bool Triangulation::grow_cavity(const Vec3& p, TetId seed, Cavity& cavity, const
             if (mark != kept) {
                 bool conflict = false;
                 if (tets_.corner(n, 3) == kInfiniteVertex) {
-                    if constexpr (kZoned) {
-                        if (!is_mine(tets_.across(n, 3).tet())) return false;
-                    }
+                    if (!may_enter<kZoned>(tets_.across(n, 3).tet())) return false;
                     conflict = ghost_in_conflict(n, p);
                 } else {
                     // A neighbour across two faces was new twice.

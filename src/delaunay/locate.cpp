@@ -7,6 +7,7 @@
 namespace wellmesh {
 
 TetId Triangulation::locate(const Vec3& p, TetId hint) const {
+    if (is_view()) return walk<true>(p, hint);
     TetId t = hint;
     if (!t.valid() || t.index() >= tets_.slots() || !tets_.is_live(t)) t = last_located_;
     if (!t.valid() || t.index() >= tets_.slots() || !tets_.is_live(t)) {
@@ -22,13 +23,9 @@ TetId Triangulation::locate(const Vec3& p, TetId hint) const {
 /// @return an invalid id if the way leaves the zone.
 template <bool kZoned>
 TetId Triangulation::walk(const Vec3& p, TetId t) const {
-    const auto may_enter = [this](TetId next) {
-        if constexpr (kZoned) return is_mine(next);
-        else return true;
-    };
     if (tets_.is_ghost(t)) {
         t = tets_.across(t, 3).tet();
-        if (!may_enter(t)) return {};
+        if (!may_enter<kZoned>(t)) return {};
     }
     // A visibility walk ends in a Delaunay triangulation whatever face is taken first [Devillers02]; the one it came through is skipped.
     TetId from{};
@@ -48,7 +45,7 @@ TetId Triangulation::walk(const Vec3& p, TetId t) const {
             }
         }
         if (!next.valid()) break;
-        if (!may_enter(next)) return {};
+        if (!may_enter<kZoned>(next)) return {};
         from = t;
         t = next;
         start = static_cast<unsigned>(steps) & 3U;
@@ -60,9 +57,11 @@ TetId Triangulation::walk(const Vec3& p, TetId t) const {
 template TetId Triangulation::walk<false>(const Vec3& p, TetId t) const;
 template TetId Triangulation::walk<true>(const Vec3& p, TetId t) const;
 
-void Triangulation::find_star(VertexId v, std::vector<TetId>& star) {
+template <bool kZoned>
+bool Triangulation::collect_star(VertexId v, std::vector<TetId>& star) {
     star.clear();
     const TetId seed = vertices_[v.index()].tet;
+    if (!may_enter<kZoned>(seed)) return false;
     next_epoch();
     star.push_back(seed);
     mark_[seed.index()] = epoch_;
@@ -72,19 +71,25 @@ void Triangulation::find_star(VertexId v, std::vector<TetId>& star) {
         for (unsigned f = 0; f < 4; ++f) {
             if (f == at) continue;
             const TetId n = tets_.across(t, f).tet();
+            if (!may_enter<kZoned>(n)) return false;
             if (mark_[n.index()] == epoch_) continue;
             mark_[n.index()] = epoch_;
             star.push_back(n);
         }
     }
+    return true;
 }
 
-TetId Triangulation::find_edge(VertexId a, VertexId b) {
-    // Walk the star of a; stop at the first tetrahedron that has b too.
-    next_epoch();
+bool Triangulation::find_star(VertexId v, std::vector<TetId>& star) { return is_view() ? collect_star<true>(v, star) : collect_star<false>(v, star); }
+
+/// Walks the star of a; stops at the first tetrahedron that has b too.
+template <bool kZoned>
+TetId Triangulation::search_edge(VertexId a, VertexId b) {
     std::vector<TetId>& stack = star_stack_;
     stack.clear();
     stack.push_back(vertices_[a.index()].tet);
+    if (!may_enter<kZoned>(stack[0])) return {};
+    next_epoch();
     mark_[stack[0].index()] = epoch_;
     for (std::size_t i = 0; i < stack.size(); ++i) {
         const TetId t = stack[i];
@@ -93,6 +98,7 @@ TetId Triangulation::find_edge(VertexId a, VertexId b) {
         for (unsigned f = 0; f < 4; ++f) {
             if (f == at) continue;
             const TetId n = tets_.across(t, f).tet();
+            if (!may_enter<kZoned>(n)) return {};
             if (mark_[n.index()] == epoch_) continue;
             mark_[n.index()] = epoch_;
             stack.push_back(n);
@@ -100,6 +106,8 @@ TetId Triangulation::find_edge(VertexId a, VertexId b) {
     }
     return {};
 }
+
+TetId Triangulation::find_edge(VertexId a, VertexId b) { return is_view() ? search_edge<true>(a, b) : search_edge<false>(a, b); }
 
 TetFace Triangulation::find_face(VertexId a, VertexId b, VertexId c) {
     const TetId first = find_edge(a, b);
@@ -115,6 +123,7 @@ TetFace Triangulation::find_face(VertexId a, VertexId b, VertexId c) {
         if (ahead == c) return TetFace{t, tets_.find_corner(t, behind)};
         if (behind == c) return TetFace{t, tets_.find_corner(t, ahead)};
         const TetFace next = tets_.across(t, tets_.find_corner(t, behind));
+        if (is_view() && !may_enter<true>(next.tet())) return {};
         behind = ahead;
         ahead = tets_.corner(next.tet(), next.face());
         t = next.tet();

@@ -174,8 +174,14 @@ private:
 
 bool Triangulation::find_hole(VertexId v, Hole& hole, std::size_t most_tets) {
     hole.vertex = v;
-    find_star(v, hole.star);
-    return hole.star.size() <= most_tets && HoleFiller(*this, hole).fill();
+    if (!find_star(v, hole.star) || hole.star.size() > most_tets) return false;
+    if (is_view())
+        for (const TetId t : hole.star) {
+            // Whether a ghost is in conflict may be asked of the tetrahedron behind it: as when v is put back.
+            const TetId n = tets_.across(t, tets_.find_corner(t, v)).tet();
+            if (!may_enter<true>(n) || (tets_.is_ghost(n) && !may_enter<true>(tets_.across(n, 3).tet()))) return false;
+        }
+    return HoleFiller(*this, hole).fill();
 }
 
 void Triangulation::remove_vertex(const Hole& hole) {

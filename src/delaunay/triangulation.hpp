@@ -67,6 +67,9 @@ struct Hole {
     } scratch;
 };
 
+class Zones;
+struct ZoneViews;
+
 /// Takes part in bulk insertion.
 class BulkObserver {
 public:
@@ -129,18 +132,19 @@ public:
     [[nodiscard]] TetId locate(const Vec3& p, TetId hint) const;
     [[nodiscard]] bool in_conflict(TetId t, const Vec3& p) const;
     /// All tetrahedra in conflict with p. @param near  where to start walking.
-    /// @return false, with cavity.duplicate set, if there is a vertex at p.
+    /// @return false, with cavity.duplicate set, if there is a vertex at p; or if the search left the zone.
     bool find_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity);
     /// The same from a tetrahedron that is in conflict with p, for as long as `accept` says yes to the boundary's faces, one by one as they
     /// are found. @return false if it said no: the cavity is incomplete then. @pre p is no vertex's point
     template <class Accept>
     bool grow_conflict_cavity(const Vec3& p, TetId seed, Cavity& cavity, const Accept& accept) {
+        if (is_view()) return grow_cavity<true>(p, seed, cavity, accept);
         return grow_cavity<false>(p, seed, cavity, accept);
     }
     /// After a cavity was found and before any change: is t in that cavity?
     [[nodiscard]] bool in_last_cavity(TetId t) const { return mark_[t.index()] == epoch_ + 1; }
-    /// Tetrahedra of the star of v, ghosts included.
-    void find_star(VertexId v, std::vector<TetId>& star);
+    /// Tetrahedra of the star of v, ghosts included. @return false: it is not all in the zone, and incomplete
+    bool find_star(VertexId v, std::vector<TetId>& star);
     /// Some tetrahedron that has the edge, or an invalid id.
     [[nodiscard]] TetId find_edge(VertexId a, VertexId b);
     /// The face abc seen from one side, or an invalid one.
@@ -157,6 +161,21 @@ public:
     /// ids are not. @param order  vertices, neighbours in space near each other
     /// @return what was refused, or not begun when the observer said stop  @pre four vertices are inserted
     std::vector<std::uint32_t> insert_on(Workers& workers, std::span<const std::uint32_t> order, BulkObserver* observer = nullptr);
+    // --- zones (zones.hpp)
+    /// Makes a view of each zone, with `spare` tetrahedra to grow by. Until each is joined the whole must not be touched, and views only insert and remove vertices
+    /// that are stored already.
+    void split(Workers& workers, const Zones& zones, std::size_t spare, ZoneViews& out);
+    void join(const Triangulation& view);
+    [[nodiscard]] bool is_view() const { return zone_of_tet_ != nullptr; }
+    /// Of a view: has anything failed since forget_leaving() because it would have left the zone, or found no room? On the whole mesh nothing does.
+    [[nodiscard]] bool left_zone() const { return left_zone_; }
+    void forget_leaving() { left_zone_ = false; }
+    /// Can there be so many tetrahedra more? Only views are limited.
+    [[nodiscard]] bool has_room(std::size_t more) const {
+        if (is_view() && tets_.room() < more) left_zone_ = true;
+        return !is_view() || tets_.room() >= more;
+    }
+
     struct Renumbering {
         std::vector<TetId> old_of;        ///< for each new id the old one
         std::vector<std::uint8_t> turns;  ///< by the old id: how its corners were turned
@@ -176,8 +195,6 @@ public:
     void set_point(VertexId v, const Vec3& p) { vertices_[v.index()].point = p; }  ///< @pre v is not inserted
 
     void reserve(std::size_t vertices);
-    /// Gives back memory that only changes and searches need, until the next one.
-    void drop_scratch() { mark_.release(); }
 
 private:
     /// Half a cache line, so that a conflict test, the join to a cavity and the star's entry touch one line a vertex.
@@ -213,6 +230,21 @@ private:
 
     // of views: what may be touched
     [[nodiscard]] bool is_mine(TetId t) const { return zone_of_tet_[t.index()] == zone_; }
+    /// May this be touched? If not, that is noted.
+    template <bool kZoned>
+    [[nodiscard]] bool may_enter(TetId t) const {
+        if constexpr (kZoned) {
+            if (is_mine(t)) return true;
+            left_zone_ = true;
+            return false;
+        } else {
+            return true;
+        }
+    }
+    template <bool kZoned>
+    bool collect_star(VertexId v, std::vector<TetId>& star);
+    template <bool kZoned>
+    TetId search_edge(VertexId a, VertexId b);
     Triangulation view_of_zone(std::uint8_t zone, std::uint8_t* zone_of_tet, std::vector<TetId> slots);
     void insert_in_zone(std::span<const std::uint32_t> order, TetId seed, BulkObserver* observer, std::vector<std::uint32_t>& left, std::vector<std::uint32_t>& refused);
     std::vector<std::uint32_t> insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn, BulkObserver* observer, std::vector<std::uint32_t>& refused);
@@ -273,6 +305,7 @@ private:
     mutable TetId last_located_{};
     std::uint8_t* zone_of_tet_ = nullptr;
     std::uint8_t zone_ = 0;
+    mutable bool left_zone_ = false;
 
     friend class HoleFiller;
 };

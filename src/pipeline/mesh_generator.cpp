@@ -219,7 +219,7 @@ private:
         const bool exudes = options_.slivers == SliverStrategy::exude;  // the finished mesh gets weights
         if (verdict == RunGuard::Verdict::go_on && !certified && !exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {
-                const SliverOutcome outcome = remove_slivers(mesh, boundary, refiner, guard_, options_);
+                const SliverOutcome outcome = remove_slivers(mesh, boundary, refiner, guard_, workers_, options_);
                 verdict = outcome.verdict;
                 result_.statistics.moved_vertices = outcome.moved_vertices;
                 if (!outcome.note.empty()) result_.statistics.notes.push_back(outcome.note);

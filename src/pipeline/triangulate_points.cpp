@@ -33,7 +33,7 @@ DelaunayResult triangulate_points(std::span<const Vec3> points, unsigned threads
     const std::vector<std::uint32_t> order = biased_spatial_order(points, workers);
     if (!mesh.insert_all_in_order(points, order, workers)) throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all points lie in one plane: there is no tetrahedron");
     result.duplicates = mesh.duplicate_count();
-    mesh.drop_scratch();
+    mesh.release_scratch();
     visit_in_canonical_order<false>(
         mesh.tets(), mesh.vertex_count(), workers, [&](std::size_t n) { result.mesh.tets.resize(n); },
         [&](std::size_t place, TetId, const TetStore::Corners& c) {

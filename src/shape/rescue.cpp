@@ -19,7 +19,7 @@ constexpr unsigned kGradings = 4;
 /// Chains of changes about the corners of each of the few that are left.
 RunGuard::Verdict ShapeImprover::rescue() {
     std::unordered_map<std::uint64_t, double> known;  // may stay as bad as they are
-    for (const Bad& b : left_) known[key_of(b.corners)] = b.badness;
+    for (const Bad& b : left()) known[key_of(b.corners)] = b.badness;
     std::uint64_t target = 0;
     chains_.tolerates = [&](TetId t) {
         if (mover_.excuses && mover_.excuses(t)) return true;
@@ -29,18 +29,18 @@ RunGuard::Verdict ShapeImprover::rescue() {
     };
     mover_.move_beside_excused(true);
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
-    std::sort(left_.begin(), left_.end());
-    for (std::size_t i = 0; i < std::min(left_.size(), kMostRescued) && verdict == RunGuard::Verdict::go_on; ++i) {
-        target = key_of(left_[i].corners);
-        for (const VertexId v : freest_first(mesh_, left_[i].corners)) {
-            verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), left_.size() - i);
-            if (verdict != RunGuard::Verdict::go_on || !find_tet(mesh_, left_[i].corners).valid()) break;
+    std::sort(left().begin(), left().end());
+    for (std::size_t i = 0; i < std::min(left().size(), kMostRescued) && verdict == RunGuard::Verdict::go_on; ++i) {
+        target = key_of(left()[i].corners);
+        for (const VertexId v : freest_first(mesh_, left()[i].corners)) {
+            verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), left().size() - i);
+            if (verdict != RunGuard::Verdict::go_on || !find_tet(mesh_, left()[i].corners).valid()) break;
             if (mesh_.info(v).carrier != CarrierKind::input_vertex && (chains_.shove(v, kShoves) || chains_.dissolve(v))) break;
         }
     }
     mover_.move_beside_excused(false);
     chains_.tolerates = {};
-    collect_bad();
+    mending_.collect(workers_);
     return verdict;
 }
 
@@ -49,11 +49,11 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
     if (!guard_.can_double()) return RunGuard::Verdict::go_on;
     const ConformingMesh last = mesh_;
     const std::vector<double> balls = refiner_.balls();
-    const std::size_t before = left_.size();
+    const std::size_t before = left().size();
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
-    for (unsigned r = 0; r < kGradings && !left_.empty() && verdict == RunGuard::Verdict::go_on; ++r) {
+    for (unsigned r = 0; r < kGradings && !left().empty() && verdict == RunGuard::Verdict::go_on; ++r) {
         std::vector<TetId> stuck;
-        for (const Bad& b : left_)
+        for (const Bad& b : left())
             if (const TetId t = find_tet(mesh_, b.corners); t.valid()) stuck.push_back(t);
         const ConformingMesh previous = mesh_;
         try {
@@ -65,21 +65,21 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
         if (verdict == RunGuard::Verdict::out_of_vertices && !guard_.user_limit_spent()) {
             mesh_ = previous;
             refiner_.forget_waiting();
-            collect_bad();
+            mending_.collect(workers_);
             verdict = RunGuard::Verdict::go_on;
             break;
         }
-        collect_bad();
+        mending_.collect(workers_);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
-        if (left_.empty() || verdict != RunGuard::Verdict::go_on) break;
+        if (left().empty() || verdict != RunGuard::Verdict::go_on) break;
         const ConformingMesh settled = mesh_;
-        verdict = split_or_go_back(goal_cosine_, settled);
+        verdict = split_or_go_back(judge_.goal(), settled);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
     }
-    if (verdict == RunGuard::Verdict::go_on && left_.size() < before && !guard_.has_too_many(mesh_.vertex_count())) return verdict;
+    if (verdict == RunGuard::Verdict::go_on && left().size() < before && !guard_.has_too_many(mesh_.vertex_count())) return verdict;
     mesh_ = last;
     refiner_.set_balls(balls);
-    collect_bad();
+    mending_.collect(workers_);
     return verdict;
 }
 
@@ -89,11 +89,11 @@ RunGuard::Verdict ShapeImprover::thin_out(std::size_t first_new, std::size_t eno
     if (!guard_.can_double()) return RunGuard::Verdict::go_on;
     ConformingMesh last = mesh_;
     RunGuard::Verdict verdict = thinning_.run(first_new, enough);
-    collect_bad();
-    if (!left_.empty() && verdict == RunGuard::Verdict::go_on) verdict = rescue();
-    if (left_.empty()) return verdict;
+    mending_.collect(workers_);
+    if (!left().empty() && verdict == RunGuard::Verdict::go_on) verdict = rescue();
+    if (left().empty()) return verdict;
     mesh_ = std::move(last);
-    collect_bad();
+    mending_.collect(workers_);
     return verdict;
 }
 

@@ -15,8 +15,9 @@ public:
     StarJudge(const ConformingMesh& mesh, const TetJudge& judge, const Placement& where, const Vec3& point, double limit)
         : mesh_(mesh), judge_(judge), where_(where), point_(point), limit_(limit) {}
 
-    /// Takes the tetrahedron of the point and this face of its cavity. @return false if it is worse than `limit`.
-    bool take(const BoundaryFace& b) {
+    /// Takes the tetrahedron of the point and this face of its cavity. @return false if it is worse than `limit`. Part of each search for a cavity, also where
+    /// there is one for the whole mesh and one for views.
+    [[gnu::always_inline]] bool take(const BoundaryFace& b) {
         const TetId behind = b.inside.tet();
         if (!mesh_.in_domain(behind)) return true;
         const auto c = mesh_.tets().face_corners(b.inside);

@@ -21,6 +21,10 @@ public:
     TetJudge(const ConformingMesh& mesh, const SizeField& sizes, double max_radius_edge)
         : mesh_(mesh), sizes_(sizes), squared_radius_edge_(max_radius_edge * max_radius_edge) {}
 
+    /// The same judge for a view of the mesh.
+    TetJudge(const ConformingMesh& view, const TetJudge& whole)
+        : mesh_(view), sizes_(whole.sizes_), squared_radius_edge_(whole.squared_radius_edge_), goal_(whole.goal_), max_aspect_(whole.max_aspect_) {}
+
     /// From now on the goal is this cosine, and a circumradius over inradius of at most `max_aspect`: beyond that a tetrahedron is as bad as
     /// kAspectWeight (aspect / max_aspect - 1) above the goal.
     void set_goal(double cosine, double max_aspect) {

@@ -28,6 +28,24 @@ constexpr double kRefused = std::numeric_limits<double>::infinity();  // worse t
 
 }  // namespace
 
+VertexMover VertexMover::for_zone(ConformingMesh& view, BoundaryRefiner& boundary, const TetJudge& judge) {
+    VertexMover out(view, boundary, judge, seed_);
+    if (attempts_.size() < mesh_.vertex_slots()) attempts_.resize(mesh_.vertex_slots(), 0);
+    out.attempts_ = attempts_.view();
+    out.follow_gradients_ = follow_gradients_;
+    return out;
+}
+
+void VertexMover::join(const VertexMover& zone) {
+    const MoveStatistics& s = zone.statistics_;
+    statistics_.moves += s.moves;
+    statistics_.smoothings += s.smoothings;
+    statistics_.removals += s.removals;
+    statistics_.attempts += s.attempts;
+    statistics_.evaluations += s.evaluations;
+    statistics_.undone += s.undone;
+}
+
 Vec3 VertexMover::on_carrier(const Vec3& p) const {
     if (where_.carrier == CarrierKind::segment) return project_to_segment(mesh_.plc(), SegmentId{where_.carrier_id}, p);
     if (where_.carrier == CarrierKind::facet) return project_to_facet(mesh_.plc().facets[where_.carrier_id], p);
@@ -51,11 +69,18 @@ bool VertexMover::find_placement() {
     return where_.b.valid();
 }
 
+/// In a view: labels of the subsegment that v splits are on the stars of its ends.
+bool VertexMover::has_both_ends() {
+    Triangulation& tri = mesh_.triangulation();
+    return !tri.is_view() || where_.carrier != CarrierKind::segment || (tri.find_star(where_.a, filling_) && tri.find_star(where_.b, filling_));
+}
+
 /// Finds the hole that v would leave, and what the star is like. @return false if v can't move.
 bool VertexMover::look_at_star(VertexId v) {
     if (mesh_.info(v).carrier == CarrierKind::input_vertex || !mesh_.triangulation().is_inserted(v)) return false;
     vertex_ = v;
-    if (!mesh_.triangulation().find_hole(v, hole_, kMostTets) || !find_placement()) return false;
+    if (!mesh_.triangulation().find_hole(v, hole_, kMostTets) || !mesh_.has_room_to_move(std::max(kMostTets, hole_.filling.size()))) return false;
+    if (!find_placement() || !has_both_ends()) return false;
     home_ = mesh_.point(v);
     optimal_ = middle_ = Vec3{};
     star_cosine_ = 0;
@@ -100,11 +125,17 @@ void VertexMover::propose_gradients(TetId worst, double reach) {
     for (const double step : {0.25, -0.25, 0.5, -0.5}) offer((step * reach / norm(normal)) * normal, reach);
 }
 
+/// Of the vertex at hand, so that who else has been tried meanwhile makes no difference.
+std::uint32_t VertexMover::count_attempt() {
+    if (attempts_.size() < mesh_.vertex_slots()) attempts_.resize(mesh_.vertex_slots(), 0);
+    return ++attempts_[vertex_.index()];
+}
+
 /// Places to try: the optimal-Delaunay point, the neighbours' middle, offsets against the worst tetrahedron's opposite face, then samples.
 void VertexMover::propose(TetId worst, unsigned samples) {
     proposals_.clear();
     const double reach = kReach * mean_edge_;
-    const std::uint64_t key = mix64(seed_, mix64(vertex_.value(), ++attempt_));
+    const std::uint64_t key = mix64(seed_, mix64(vertex_.value(), count_attempt()));
     offer(optimal_, reach);
     offer(middle_, reach);
     if (follow_gradients_) propose_gradients(worst, reach);
@@ -148,7 +179,7 @@ void VertexMover::judge_filling() {
 
 void VertexMover::put_back() {
     mesh_.triangulation().set_point(vertex_, home_);
-    mesh_.undo_removal(vertex_, where_, star_before_);
+    mesh_.undo_removal(vertex_, where_, star_before_, filling_);
 }
 
 void VertexMover::note(bool removed) {
@@ -198,7 +229,7 @@ double VertexMover::try_point(const Vec3& p, double limit) {
     if (inside && mesh_.cell(seed).value() != where_.carrier_id) return kRefused;
     StarJudge star(mesh_, judge_, where_, p, limit);
     if (!tri.grow_conflict_cavity(p, seed, cavity_, [&](const BoundaryFace& b) { return star.take(b); })) {
-        note_failure(cavity_.boundary.back());
+        if (!tri.left_zone()) note_failure(cavity_.boundary.back());
         return kRefused;
     }
     if (cavity_.boundary.size() > kMostTets) return kRefused;
@@ -266,12 +297,13 @@ bool VertexMover::move(VertexId v, TetId worst, double goal, unsigned samples) {
     ranked_.clear();
     for (const Vec3& p : proposals_) {
         const double cosine = try_point(p, best);
+        if (mesh_.triangulation().left_zone()) break;  // another turn may have more room for it
         if (cosine > best) continue;
         ranked_.push_back({p, cosine});
         if (cosine <= goal) break;                                    // good enough
         if (where_.carrier == CarrierKind::region && !is_excused) best = cosine;  // inside, nothing can spoil the best one later
     }
-    if (put_best(limit, is_excused ? kExcusedTrials : kTrials)) {
+    if (!mesh_.triangulation().left_zone() && put_best(limit, is_excused ? kExcusedTrials : kTrials)) {
         ++statistics_.moves;
         return true;
     }

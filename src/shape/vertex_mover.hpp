@@ -29,6 +29,11 @@ public:
     VertexMover(ConformingMesh& mesh, BoundaryRefiner& boundary, const TetJudge& judge, std::uint64_t seed)
         : mesh_(mesh), boundary_(boundary), judge_(judge), seed_(seed) {}
 
+    /// For a view of a zone of the mesh. If a move fails there because it would have left the zone, the view says so.
+    [[nodiscard]] VertexMover for_zone(ConformingMesh& view, BoundaryRefiner& boundary, const TetJudge& judge);
+    /// Takes the zone's counts over.
+    void join(const VertexMover& zone);
+
     /// Moves v so that the worst tetrahedron of its star gets better, to the first place found that reaches `goal`, or the best.
     /// @param worst  a tetrahedron of the star that is to be mended. @return was it moved?
     bool move(VertexId v, TetId worst, double goal, unsigned samples);
@@ -77,6 +82,8 @@ private:
     [[nodiscard]] bool is_flat_at_acute() const;
     void offer(const Vec3& offset, double reach);
     [[nodiscard]] bool find_placement();
+    [[nodiscard]] bool has_both_ends();
+    [[nodiscard]] std::uint32_t count_attempt();
     [[nodiscard]] Vec3 on_carrier(const Vec3& p) const;
     /// Cosine of the star that p would get, more than `limit` as soon as that is certain, infinite if p is not to be had. Leaves p's cavity.
     [[nodiscard]] double try_point(const Vec3& p, double limit);
@@ -90,7 +97,8 @@ private:
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;
     const TetJudge& judge_;
-    std::uint64_t seed_, attempt_ = 0;
+    std::uint64_t seed_;
+    SharedArray<std::uint32_t> attempts_;  // at each vertex
     ChangeLog log_;
     bool follow_gradients_ = false, beside_excused_ = false;
 

@@ -120,7 +120,7 @@ void prepare_refinement(Refiner& refiner, BoundaryRefiner& boundary, const MeshO
     refiner.set_sliver_rule(rule);
 }
 
-SliverOutcome remove_slivers(ConformingMesh& mesh, BoundaryRefiner& boundary, Refiner& refiner, RunGuard& guard, const MeshOptions& options) {
+SliverOutcome remove_slivers(ConformingMesh& mesh, BoundaryRefiner& boundary, Refiner& refiner, RunGuard& guard, Workers& workers, const MeshOptions& options) {
     SliverOutcome outcome;
     const double theta = options.quality.min_dihedral_angle_deg;
     switch (options.slivers) {
@@ -132,7 +132,7 @@ SliverOutcome remove_slivers(ConformingMesh& mesh, BoundaryRefiner& boundary, Re
         case SliverStrategy::perturb:
         case SliverStrategy::best: {
             if (!(theta > 0)) break;
-            ShapeImprover improver(mesh, boundary, refiner, guard, options.seed);
+            ShapeImprover improver(mesh, boundary, refiner, guard, workers, options.seed);
             outcome.verdict = options.slivers == SliverStrategy::best ? improver.improve(theta) : improver.perturb(theta);
             outcome.moved_vertices = improver.statistics().moves;
             break;

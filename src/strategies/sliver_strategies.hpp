@@ -9,6 +9,7 @@
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
+#include "core/workers.hpp"
 #include "refinement/refine.hpp"
 #include "wellmesh/options.hpp"
 
@@ -37,6 +38,6 @@ struct SliverOutcome {
 };
 
 /// Removes slivers from the almost-good mesh that refinement left. Whatever comes of it, the mesh stays Delaunay, conforming and Gabriel.
-SliverOutcome remove_slivers(ConformingMesh& mesh, BoundaryRefiner& boundary, Refiner& refiner, RunGuard& guard, const MeshOptions& options);
+SliverOutcome remove_slivers(ConformingMesh& mesh, BoundaryRefiner& boundary, Refiner& refiner, RunGuard& guard, Workers& workers, const MeshOptions& options);
 
 }  // namespace wellmesh

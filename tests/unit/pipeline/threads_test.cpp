@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "support/acute_plcs.hpp"
 #include "support/synthetic_plcs.hpp"
 #include "wellmesh/delaunay.hpp"
 #include "wellmesh/generate.hpp"
@@ -21,9 +22,9 @@ void expect_same(const TetMesh& a, const TetMesh& b) {
     EXPECT_TRUE(a.subsegments == b.subsegments);
 }
 
-class Threads : public ::testing::TestWithParam<std::size_t> {};
+class ThreadsOn : public ::testing::TestWithParam<std::size_t> {};
 
-TEST_P(Threads, TheSameMesh) {
+TEST_P(ThreadsOn, TheSameMesh) {
     const NamedPlc domain = all_synthetic_plcs().at(GetParam());
     for (const std::uint64_t rotation : {0U, 3U}) {
         const Plc plc = transformed(domain.plc, rotation, 0, 1);
@@ -41,7 +42,26 @@ TEST_P(Threads, TheSameMesh) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Domains, Threads, ::testing::Range<std::size_t>(0, 5));
+INSTANTIATE_TEST_SUITE_P(Domains, ThreadsOn, ::testing::Range<std::size_t>(0, 5));
+
+/// Angles that take many moves, in zones, with an acute edge and without.
+TEST(Threads, TheSameMeshOfLargeAngles) {
+    for (const Plc& plc : {cube(), wedge(40)}) {
+        MeshOptions options;
+        options.size.edge_length = diagonal(plc) / 80;
+        options.quality.min_dihedral_angle_deg = 30;
+        options.threads = 1;
+        const MeshResult alone = generate(plc, options);
+        EXPECT_TRUE(alone.certificate.proven());
+        EXPECT_GT(alone.mesh.tets.size(), 33'000U);  // enough for two zones
+        EXPECT_GT(alone.statistics.moved_vertices, 500U);
+        for (const unsigned threads : {2U, 3U, 8U}) {
+            SCOPED_TRACE(threads);
+            options.threads = threads;
+            expect_same(alone.mesh, generate(plc, options).mesh);
+        }
+    }
+}
 
 TEST(ThreadsAndLimits, AsManyVerticesAsAllowedForAnyNumberOfThreads) {
     const Plc plc = cube();

@@ -22,7 +22,7 @@ struct Improved {
     Improved(const Plc& plc, const MeshOptions& options)
         : staged(plc, options),
           refiner(staged.mesh, staged.boundary, staged.guard, staged.options),
-          improver(staged.mesh, staged.boundary, refiner, staged.guard, options.seed) {
+          improver(staged.mesh, staged.boundary, refiner, staged.guard, staged.workers, options.seed) {
         staged.conform();
         EXPECT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
     }

@@ -142,7 +142,7 @@ TEST(SliverStrategies, PicksOfRefineMakeNoNewSmallSlivers) {
         }
     });
     staged.boundary.recorder = &watcher;
-    const SliverOutcome outcome = remove_slivers(staged.mesh, staged.boundary, refiner, staged.guard, staged.options);
+    const SliverOutcome outcome = remove_slivers(staged.mesh, staged.boundary, refiner, staged.guard, staged.workers, staged.options);
     EXPECT_EQ(outcome.note, "");
     EXPECT_GT(inside, 20U);
     EXPECT_GT(on_boundary, 5U);

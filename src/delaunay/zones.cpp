@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// A triangulation split into views of zones, and put together again.
+#include "delaunay/zones.hpp"
+
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace wellmesh {
+
+void Triangulation::split(Workers& workers, const Zones& zones, std::size_t spare, ZoneViews& out) {
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    const std::size_t slots = tets_.slots();
+    out.zone_of_vertex.resize_as_is(vertices_.size());
+    workers.for_ranges(vertices_.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) out.zone_of_vertex[i] = zones.zone_of(vertices_[i].point);
+    });
+    out.zone_of_tet.assign(slots + zones.count() * spare, ZoneViews::kNone);
+    std::vector<std::array<std::size_t, Zones::kMost>> counts((slots + kGrain - 1) / kGrain);
+    workers.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const TetStore::Corners& c = tets_.corners(TetId{i});
+            if (!c[0].valid()) continue;
+            const std::uint8_t zone = out.zone_of_vertex[c[0].index()];
+            if (out.zone_of_vertex[c[1].index()] != zone || out.zone_of_vertex[c[2].index()] != zone) continue;
+            if (c[3] != kInfiniteVertex && out.zone_of_vertex[c[3].index()] != zone) continue;
+            out.zone_of_tet[i] = zone;
+            ++counts[piece][zone];
+        }
+    });
+    out.tets.assign(zones.count(), 0);
+    for (const auto& piece : counts)
+        for (std::size_t z = 0; z < zones.count(); ++z) out.tets[z] += piece[z];
+
+    std::vector<std::vector<TetId>> free(zones.count());
+    for (std::size_t z = 0; z < zones.count(); ++z) {
+        free[z] = tets_.take_slots(spare);
+        for (const TetId t : free[z]) out.zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
+    }
+    if (epoch_ > std::numeric_limits<std::uint32_t>::max() / 2) {
+        std::fill(mark_.begin(), mark_.end(), 0U);
+        epoch_ = 0;
+    }
+    mark_.resize(std::max(mark_.size(), tets_.slots()), 0);
+    out.views.clear();
+    for (std::size_t z = 0; z < zones.count(); ++z) out.views.push_back(view_of_zone(static_cast<std::uint8_t>(z), out.zone_of_tet.data(), std::move(free[z])));
+}
+
+void Triangulation::join(const Triangulation& view) {
+    epoch_ = std::max(epoch_, view.epoch_);
+    tets_.take_back(view.tets_);
+}
+
+}  // namespace wellmesh

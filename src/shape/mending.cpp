@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shape/mending.hpp"
+
+#include <algorithm>
+
+#include "shape/corners.hpp"
+
+namespace wellmesh {
+namespace {
+
+constexpr unsigned kTriesUntouched = 3;  // failures after which a tetrahedron rests until its neighbourhood changes
+constexpr unsigned kTriesInAll = 4;      // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
+
+}  // namespace
+
+Mending Mending::for_zone(ConformingMesh& view, const TetJudge& judge, VertexMover& mover) {
+    fit_arrays();
+    Mending out(view, judge, mover);
+    out.blocks_ = blocks_;
+    out.clock_ = clock_;
+    out.pass_ = pass_;
+    out.touched_ = touched_.view();
+    out.tried_ = tried_.view();
+    out.known_ = &stuck_;
+    return out;
+}
+
+void Mending::join(Mending& zone) {
+    clock_ = std::max(clock_, zone.clock_);
+    for (const auto& [key, what] : zone.stuck_) stuck_[key] = what;
+    left_.insert(left_.end(), zone.left_.begin(), zone.left_.end());
+    heap_.insert(heap_.end(), zone.heap_.begin(), zone.heap_.end());
+    heap_.insert(heap_.end(), zone.outside_.begin(), zone.outside_.end());
+}
+
+void Mending::fit_arrays() {
+    if (touched_.size() >= mesh_.vertex_slots()) return;
+    touched_.resize(mesh_.vertex_slots() + 64, 0);
+    tried_.resize(touched_.size(), Tried{});
+}
+
+/// Null: there has been no failure.
+Mending::Stuck* Mending::find_stuck(std::uint64_t key) {
+    if (const auto mine = stuck_.find(key); mine != stuck_.end()) return &mine->second;
+    if (!known_) return nullptr;
+    const auto known = known_->find(key);
+    return known != known_->end() ? &stuck_.emplace(key, known->second).first->second : nullptr;
+}
+
+bool Mending::may_smooth(const Bad& bad) { return stuck_[key_of(bad.corners)].smoothings++ < kTriesInAll; }
+
+void Mending::begin_anew() {
+    stuck_.clear();
+    tried_.assign(tried_.size(), Tried{});
+}
+
+/// Mostly it is found faster than the badness that it is not.
+bool Mending::is_bad(TetId t, double& how) const {
+    if (!judge_.counts(t) || (!goes_beyond_shape && judge_.is_surely_good(t))) return false;
+    how = badness(t);
+    return how > judge_.goal();
+}
+
+Bad Mending::listed(TetId t, double how) const {
+    const TetStore::Corners& corners = mesh_.tets().corners(t);
+    return {how, corners, blocks_.of(mesh_.point(corners[0]))};
+}
+
+void Mending::collect(Workers& workers) {
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    const std::size_t slots = mesh_.tets().slots();
+    blocks_ = Blocks(mesh_.triangulation().low(), mesh_.triangulation().high(), mesh_.tets().live());
+    heap_.clear();
+    left_.clear();
+    // What goes beyond shape searches the mesh: not for several threads at once. It matters to few.
+    std::vector<std::vector<TetId>> suspects((slots + kGrain - 1) / kGrain);
+    workers.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const TetId t{i};
+            if (!judge_.counts(t) || (judge_.is_surely_good(t) && (!goes_beyond_shape || judge_.keeps_radius_edge(t)))) continue;
+            suspects[piece].push_back(t);
+        }
+    });
+    double how = 0;
+    for (const std::vector<TetId>& piece : suspects)
+        for (const TetId t : piece)
+            if (is_bad(t, how)) left_.push_back(listed(t, how));
+}
+
+void Mending::touch(const std::vector<TetId>& tets) {
+    fit_arrays();
+    ++clock_;
+    double how = 0;
+    for (const TetId t : tets) {
+        if (!mesh_.tets().is_live(t)) continue;
+        for (const VertexId v : mesh_.tets().corners(t))
+            if (v != kInfiniteVertex) touched_[v.index()] = clock_;
+        if (!is_bad(t, how)) continue;
+        heap_.push_back(listed(t, how));
+        std::push_heap(heap_.begin(), heap_.end(), IsLater{});
+    }
+}
+
+void Mending::begin_pass() {
+    ++pass_;
+    fit_arrays();
+    heap_.insert(heap_.end(), left_.begin(), left_.end());
+    left_.clear();
+}
+
+bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
+    std::make_heap(heap_.begin(), heap_.end(), IsLater{});
+    while (!heap_.empty()) {
+        std::pop_heap(heap_.begin(), heap_.end(), IsLater{});
+        Bad bad = heap_.back();
+        heap_.pop_back();
+        mesh_.triangulation().forget_leaving();
+        const TetId t = find_tet(mesh_, bad.corners);
+        if (mesh_.triangulation().left_zone() || (t.valid() && must_wait && must_wait(t))) {
+            outside_.push_back(bad);
+            continue;
+        }
+        if (!t.valid()) continue;
+        bad.badness = badness(t);  // its corners may have moved since
+        if (bad.badness <= judge_.goal()) continue;
+        if (!may_go_on(heap_.size() + 1)) {
+            heap_.push_back(bad);
+            return false;
+        }
+        const Outcome outcome = mend(bad, samples);
+        if (outcome == Outcome::failed) left_.push_back(bad);
+        if (outcome == Outcome::left_zone) outside_.push_back(bad);
+    }
+    return true;
+}
+
+void Mending::end_pass() {
+    std::erase_if(left_, [&](Bad& b) {
+        const TetId t = find_tet(mesh_, b.corners);
+        if (!t.valid()) return true;
+        b.badness = badness(t);
+        return b.badness <= judge_.goal();
+    });
+}
+
+/// Done: the tetrahedron is gone, or not to be tried now.
+Mending::Outcome Mending::mend(const Bad& bad, unsigned samples) {
+    std::uint64_t last_change = 0;
+    for (const VertexId v : bad.corners) last_change = std::max(last_change, touched_[v.index()]);
+    const std::uint64_t key = key_of(bad.corners);
+    if (Stuck* const before = find_stuck(key)) {
+        if (before->pass == pass_) return Outcome::done;  // listed already; changes around it are for the next pass
+        if (before->when < last_change) before->failures = 0;
+        if (before->failures >= kTriesUntouched) {
+            before->pass = pass_;
+            return Outcome::failed;
+        }
+    }
+    const TetStore::Corners order = freest_first(mesh_, bad.corners);
+    for (const VertexId v : order) {
+        if (mesh_.info(v).carrier == CarrierKind::input_vertex) continue;
+        Tried& tried = tried_[v.index()];
+        if (tried.when < touched_[v.index()]) tried = {};
+        if (tried.failures >= kTriesUntouched || (tried.failures > 0 && tried.pass == pass_)) continue;
+        const TetId t = find_tet(mesh_, bad.corners);
+        if (t.valid() && mover_.move(v, t, judge_.goal(), samples)) {
+            touch(mover_.changed());
+            return Outcome::done;
+        }
+        if (mesh_.triangulation().left_zone()) return Outcome::left_zone;
+        if (!t.valid()) return Outcome::done;
+        tried = {clock_, pass_, tried.failures + 1};
+    }
+    Stuck& stuck = stuck_[key];
+    if (last_resort && stuck.last_resorts < kTriesInAll) {
+        ++stuck.last_resorts;
+        if (last_resort(bad, order)) return Outcome::done;
+    }
+    stuck.when = clock_;
+    stuck.pass = pass_;
+    ++stuck.failures;
+    return Outcome::failed;
+}
+
+bool Mending::smooth(const std::vector<VertexId>& vertices, double floor, std::vector<VertexId>& waiting, const MayGoOn& may_go_on) {
+    for (const VertexId v : vertices) {
+        if (!may_go_on(left_.size())) return false;
+        mesh_.triangulation().forget_leaving();
+        if (mover_.smooth(v, floor)) touch(mover_.changed());
+        else if (mesh_.triangulation().left_zone()) waiting.push_back(v);
+    }
+    return true;
+}
+
+}  // namespace wellmesh

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is bad in a mesh, or in a zone of it, and what has been tried against it. A pass tries to mend every bad tetrahedron, and those that this makes, by moves of
+// its vertices: block by block of space, so that what is worked on stays in the cache, the worst of a block first.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <unordered_map>
+#include <vector>
+
+#include "conforming/conforming_mesh.hpp"
+#include "core/shared_array.hpp"
+#include "core/workers.hpp"
+#include "shape/blocks.hpp"
+#include "shape/tet_judge.hpp"
+#include "shape/vertex_mover.hpp"
+
+namespace wellmesh {
+
+/// By corners, as taking a vertex out for a trial and putting it back gives tetrahedra new ids.
+struct Bad {
+    double badness = 0;
+    TetStore::Corners corners{};
+    std::uint32_t block = 0;  // of space
+    friend bool operator<(const Bad& a, const Bad& b) { return a.badness != b.badness ? a.badness < b.badness : b.corners < a.corners; }
+};
+
+class Mending {
+public:
+    Mending(ConformingMesh& mesh, const TetJudge& judge, VertexMover& mover) : mesh_(mesh), judge_(judge), mover_(mover) {}
+
+    /// How bad a tetrahedron is; at most the goal if it need not be mended.
+    std::function<double(TetId)> badness{};
+    /// Does that go by more than its shape?
+    bool goes_beyond_shape = false;
+    /// Tetrahedra for another turn: a view can't judge them. Empty: there are none.
+    std::function<bool(TetId)> must_wait{};
+    /// What to try when no move did. @return whether anything changed. Empty: nothing.
+    std::function<bool(const Bad& bad, const TetStore::Corners& freest_first)> last_resort{};
+    /// Asked for each tetrahedron of a pass, with the number of those that wait; false ends the pass.
+    using MayGoOn = std::function<bool(std::size_t waiting)>;
+
+    /// Forgets what was tried.
+    void begin_anew();
+    /// All that is bad now, in left().
+    void collect(Workers& workers);
+    /// Begins a pass: what is left waits again.
+    void begin_pass();
+    /// Goes on until nothing waits. @return false: it was not to go on
+    bool pass(unsigned samples, const MayGoOn& may_go_on);
+    /// Neighbours may have mended what is left since; a tetrahedron may be listed twice.
+    void end_pass();
+    /// Moves vertices to their optimal-Delaunay points, where nothing gets worse than `floor`. @param waiting  gets those that leave the zone
+    bool smooth(const std::vector<VertexId>& vertices, double floor, std::vector<VertexId>& waiting, const MayGoOn& may_go_on);
+
+    /// What this has made: notes when stars changed last, and what is bad now.
+    void touch(const std::vector<TetId>& tets);
+
+    /// Could not be mended.
+    [[nodiscard]] std::vector<Bad>& left() { return left_; }
+    [[nodiscard]] const std::vector<Bad>& left() const { return left_; }
+    /// Not tried yet, in any order between passes.
+    [[nodiscard]] std::vector<Bad>& waiting() { return heap_; }
+    [[nodiscard]] std::size_t count() const { return left_.size() + heap_.size(); }
+    /// May the surroundings of this one be smoothed once more?
+    [[nodiscard]] bool may_smooth(const Bad& bad);  ///< not of a view
+    /// A moment later than all before.
+    std::uint64_t tick() { return ++clock_; }
+
+    /// The same for a view of a zone. @pre the whole one is not used before join()
+    [[nodiscard]] Mending for_zone(ConformingMesh& view, const TetJudge& judge, VertexMover& mover);
+    void join(Mending& zone);
+
+private:
+    /// Block by block; the worst of a block first.
+    struct IsLater {
+        bool operator()(const Bad& a, const Bad& b) const { return a.block != b.block ? a.block > b.block : a < b; }
+    };
+    struct Stuck {
+        std::uint64_t when = 0;
+        std::uint64_t pass = 0;
+        unsigned failures = 0;                      // since its neighbourhood changed last
+        unsigned smoothings = 0, last_resorts = 0;  // in all
+    };
+    /// Moves of a vertex that failed since its star changed last.
+    struct Tried {
+        std::uint64_t when = 0, pass = 0;
+        unsigned failures = 0;
+    };
+    enum class Outcome : std::uint8_t { done, failed, left_zone };
+
+    Outcome mend(const Bad& bad, unsigned samples);
+    [[nodiscard]] Stuck* find_stuck(std::uint64_t key);
+    [[nodiscard]] bool is_bad(TetId t, double& how) const;
+    [[nodiscard]] Bad listed(TetId t, double badness) const;
+    void fit_arrays();
+
+    ConformingMesh& mesh_;
+    const TetJudge& judge_;
+    VertexMover& mover_;
+    Blocks blocks_;
+    std::uint64_t clock_ = 0, pass_ = 0;
+    SharedArray<std::uint64_t> touched_;               // per vertex: when its star changed last
+    SharedArray<Tried> tried_;                         // per vertex
+    std::unordered_map<std::uint64_t, Stuck> stuck_;   // by corners; each is looked up, in no order
+    const std::unordered_map<std::uint64_t, Stuck>* known_ = nullptr;  // of a view: what the whole knew
+    std::vector<Bad> heap_, left_;
+    std::vector<Bad> outside_;  // of a view: left its zone
+};
+
+}  // namespace wellmesh

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moves in zones: the same mesh for any number of threads, and whatever ends a run ends it there, too.
+#include "shape/zone_passes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+#include <stop_token>
+#include <vector>
+
+#include "delaunay/zones.hpp"
+#include "support/acute_plcs.hpp"
+#include "support/staged_mesh.hpp"
+#include "support/synthetic_plcs.hpp"
+
+namespace wellmesh::testing {
+namespace {
+
+/// A refined cube of about 40000 tetrahedra, enough for two zones, with slivers in it.
+struct Refined {
+    std::unique_ptr<StagedMesh> staged;
+    std::unique_ptr<Refiner> refiner;
+
+    explicit Refined(const Plc& plc = cube()) {
+        MeshOptions options;
+        options.size.edge_length = diagonal(plc) / 30;
+        staged = std::make_unique<StagedMesh>(plc, options);
+        staged->conform();
+        refiner = std::make_unique<Refiner>(staged->mesh, staged->boundary, staged->guard, staged->options);
+        EXPECT_EQ(refiner->refine(), RunGuard::Verdict::go_on);
+        EXPECT_GT(staged->mesh.tets().live(), 33'000U);
+    }
+};
+
+struct Outcome {
+    std::vector<Vec3> points;
+    std::vector<TetStore::Corners> tets;
+    std::uint64_t moves = 0;
+    friend bool operator==(const Outcome&, const Outcome&) = default;
+};
+
+Outcome improved(const Plc& plc, double angle, unsigned threads) {
+    Refined r(plc);
+    StagedMesh& staged = *r.staged;
+    const auto volumes = staged.cell_volumes();
+    Workers workers(threads);
+    ShapeImprover improver(staged.mesh, staged.boundary, *r.refiner, staged.guard, workers, 0);
+    const std::size_t bad = improver.count_bad(angle);
+    EXPECT_GT(bad, 500U);
+    EXPECT_EQ(improver.improve(angle), RunGuard::Verdict::go_on);
+    EXPECT_LT(improver.count_bad(angle), bad / 100);
+    EXPECT_EQ(staged.problem(true), "");
+    for (const auto& [cell, volume] : staged.cell_volumes()) EXPECT_NEAR(volume, volumes.at(cell), 1e-9);
+    Outcome out;
+    for (std::size_t v = 0; v < staged.mesh.vertex_slots(); ++v) out.points.push_back(staged.mesh.point(VertexId{v}));
+    for (std::size_t t = 0; t < staged.mesh.tets().slots(); ++t) {
+        const TetId id{t};
+        out.tets.push_back(staged.mesh.tets().is_live(id) ? staged.mesh.tets().corners(id) : TetStore::Corners{});
+    }
+    out.moves = improver.statistics().moves;
+    return out;
+}
+
+TEST(ZonePasses, TheSameMeshForAnyNumberOfThreads) {
+    const Outcome alone = improved(cube(), 30, 1);
+    for (const unsigned threads : {2U, 3U, 8U}) EXPECT_TRUE(alone == improved(cube(), 30, threads)) << threads << " threads";
+}
+
+TEST(ZonePasses, TheSameMeshBesideAnAcuteAngle) {
+    const Plc plc = wedge(40);
+    const Outcome alone = improved(plc, 25, 1);
+    EXPECT_TRUE(alone == improved(plc, 25, 2));
+}
+
+/// All vertices inside of a mesh, smoothed in zones.
+RunGuard::Verdict smooth_all(Refined& r, unsigned threads) {
+    StagedMesh& staged = *r.staged;
+    Workers workers(threads);
+    TetJudge judge(staged.mesh, r.refiner->sizes(), 2);
+    judge.set_goal(0.9, TetJudge::kNoAspect);
+    VertexMover mover(staged.mesh, staged.boundary, judge, 0);
+    Mending mending(staged.mesh, judge, mover);
+    mending.badness = [&](TetId t) { return judge.shape_badness(t); };
+    ZonePasses zones(staged.mesh, staged.boundary, staged.guard, workers, judge, mover, mending);
+    std::vector<VertexId> vertices;
+    for (std::size_t v = 0; v < staged.mesh.vertex_slots(); ++v) vertices.push_back(VertexId{v});
+    const std::size_t all = vertices.size();
+    const RunGuard::Verdict verdict = zones.smooth(vertices, 0.95);
+    EXPECT_EQ(staged.problem(true), "");
+    if (verdict == RunGuard::Verdict::go_on) {
+        EXPECT_GT(mover.statistics().smoothings, all / 4);
+        EXPECT_LT(vertices.size(), all / 2);  // what lay along the limits of all turns
+    }
+    return verdict;
+}
+
+TEST(ZonePasses, VerticesAreSmoothedAndTheMeshStaysWhole) {
+    Refined r;
+    EXPECT_EQ(smooth_all(r, 3), RunGuard::Verdict::go_on);
+}
+
+TEST(ZonePasses, TimeEndsThem) {
+    for (const unsigned threads : {1U, 2U}) {
+        Refined r;
+        // Three looks at the clock, then it is late.
+        int looks = 0;
+        r.staged->control.clock = [&] { return std::chrono::steady_clock::time_point(std::chrono::hours(++looks > 3 ? 1000000 : 0)); };
+        Limits limits;
+        limits.time = std::chrono::milliseconds(1000);
+        r.staged->guard = RunGuard(limits, r.staged->control);
+        EXPECT_EQ(smooth_all(r, threads), RunGuard::Verdict::out_of_time);
+    }
+}
+
+TEST(ZonePasses, CancellingEndsThem) {
+    Refined r;
+    std::stop_source source;
+    r.staged->control.stop = source.get_token();
+    source.request_stop();
+    EXPECT_EQ(smooth_all(r, 2), RunGuard::Verdict::cancelled);
+}
+
+TEST(ZonePasses, WhatTheCallerThrowsComesOut) {
+    Refined r;
+    r.staged->control.on_progress = [](const Progress&) { throw std::runtime_error("enough"); };
+    Workers workers(2);
+    EXPECT_THROW((void)ShapeImprover(r.staged->mesh, r.staged->boundary, *r.refiner, r.staged->guard, workers, 0).improve(30), std::runtime_error);
+}
+
+TEST(Zones, AViewRefusesWhatLeavesItsZone) {
+    Refined r;
+    StagedMesh& staged = *r.staged;
+    ConformingMesh& mesh = staged.mesh;
+    std::vector<Vec3> sample;
+    for (std::size_t v = 0; v < mesh.vertex_slots(); ++v) sample.push_back(mesh.point(VertexId{v}));
+    const Zones zones(sample, 2, 0);
+    ZoneViews parts;
+    std::vector<ConformingMesh> views = mesh.split(staged.workers, zones, parts);
+    ASSERT_EQ(views.size(), 2U);
+    std::size_t whole = 0, left = 0;
+    std::vector<TetId> star;
+    for (std::size_t i = 0; i < mesh.vertex_slots(); ++i) {
+        const VertexId v{i};
+        const std::uint8_t zone = parts.zone_of_vertex[i];
+        EXPECT_EQ(zone, zones.zone_of(mesh.point(v)));
+        Triangulation& view = views[zone].triangulation();
+        view.forget_leaving();
+        const bool found = view.find_star(v, star);
+        EXPECT_EQ(found, !view.left_zone());
+        for (const TetId t : star) EXPECT_EQ(parts.zone_of_tet[t.index()], zone);
+        ++(found ? whole : left);
+    }
+    EXPECT_GT(left, 100U);
+    EXPECT_GT(whole, 10 * left / 2);
+    mesh.join(views);
+    EXPECT_EQ(staged.problem(true), "");
+}
+
+}  // namespace
+}  // namespace wellmesh::testing
