@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes every model of a folder, whatever its angles and defects; an independent referee judges each mesh; one row a model.
 
-    benchmarks/any_input.py --models DIR --referee JUDGE [--program build/release/bin/wellmesh] [--only PATTERN] [--tetgen tetgen] [--json FILE]
+    benchmarks/any_input.py --models DIR --referee JUDGE [--program build/release/bin/wellmesh] [--only PATTERN] [--tetgen tetgen] [--place rotated] [--json FILE]
 
 DIR/manifest.tsv names the models and says which are closed and free of self-intersections. Each of these must yield a mesh that the referee finds
 Delaunay, Gabriel and conforming, with radius-edge ratio 2 and 20 degrees outside the tetrahedra that the run lists as exempt, within 600 s and
@@ -23,6 +23,7 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 
 from common import DEFAULT_PROGRAM, diagonal, judge, package_version, plain_copy, points_of, run, tetgen
+from transformed_models import PLACES, transformed
 
 MEMORY = 8 * 2 ** 30
 SOUND_LIMIT, LIMIT = 600, 60  # seconds
@@ -96,6 +97,8 @@ class Models:
         row = {"model": entry["file"], "sound": sound, "input_vertices": int(entry["vertices"]), "manifest_tetgen": entry["tetgen15_pq"]}
         with tempfile.TemporaryDirectory() as folder:
             plain = plain_copy(model, folder)
+            if self.arguments.place != "as given":
+                model = plain = transformed(plain, folder, self.arguments.place)
             row["mesh"] = made = self.mesh(model, plain, folder, limit)
             row["verdict"], row["ok"] = "ok" if made["ok"] else made["why"], made["ok"]
             if "vertices" not in made:
@@ -200,6 +203,8 @@ def main():
     parser.add_argument("--only", action="append", metavar="PATTERN", help="models whose path matches, like 'plc/*' (may be repeated)")
     parser.add_argument("--jobs", type=int, default=1, help="models at a time; more than cores are there for makes limits unfair")
     parser.add_argument("--limit", type=float, help="seconds a model, instead of 600 and 60")
+    parser.add_argument("--place", choices=list(PLACES), default="as given", help="mesh copies that are rotated and shifted, in diagonals")
+    parser.add_argument("--sound", action="store_true", help="only models that are closed and free of self-intersections")
     parser.add_argument("--option", action="append", default=[], help="passed on to `wellmesh mesh`, like --option=--seed=1 (may be repeated)")
     parser.add_argument("--tetgen", nargs="?", const="tetgen", help="compare vertices with this program's -pq2")
     parser.add_argument("--tetgen-limit", type=float, default=120, help="seconds for each run of the comparison")
@@ -208,6 +213,8 @@ def main():
     with open(os.path.join(arguments.models, "manifest.tsv")) as stream:
         entries = [e for e in csv.DictReader(stream, delimiter="\t") if e["class"] != "malformed"]
     entries = [e for e in entries if not arguments.only or any(fnmatch.fnmatch(e["file"], p) for p in arguments.only)]
+    if arguments.sound:
+        entries = [e for e in entries if e["closed"] == "yes" and e["self_intersecting"] == "no"]
     if not entries:
         parser.error("no model has such a name")
     if arguments.tetgen:

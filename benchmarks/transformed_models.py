@@ -50,7 +50,7 @@ def write_off(model, path, put):
 
 
 def write_poly(model, path, put):
-    """A copy of a .poly file with nodes, points in holes and points in regions placed. One polygon a line, as most programs write them."""
+    """A copy of a .poly or .smesh file with nodes, points in holes and points in regions placed. One polygon a line, as most programs write them."""
     lines = [line.split("#")[0].split() for line in open(model)]
     lines = iter([line for line in lines if line])
 
@@ -65,7 +65,10 @@ def write_poly(model, path, put):
 
         for _ in range(int(copy()[0])):
             copy(placed)
-        for _ in range(int(copy()[0])):
+        facets = int(copy()[0])
+        for _ in range(facets if model.lower().endswith(".smesh") else 0):
+            copy()
+        for _ in range(0 if model.lower().endswith(".smesh") else facets):
             header = copy()
             for _ in range(int(header[0])):
                 polygon = copy()
@@ -84,7 +87,7 @@ def transformed(model, folder, place):
     """Path of the copy in `folder`; a format that the referee reads, too."""
     put = placement(model, place)
     if model.lower().endswith((".poly", ".smesh")):
-        path = os.path.join(folder, "placed.poly")
+        path = os.path.join(folder, "placed" + os.path.splitext(model)[1].lower())
         write_poly(model, path, put)
     else:
         path = os.path.join(folder, "placed.off")
