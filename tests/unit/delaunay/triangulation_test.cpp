@@ -215,7 +215,7 @@ TEST(Triangulation, JoinsAVertexWithThousandsOfNeighbours) {
 
 /// Around a centre: cavities on both sides of what each kind of numbers and table is for (local_numbers.hpp).
 TEST(Triangulation, JoinsVerticesWithAnyNumberOfNeighbours) {
-    for (const std::size_t around : {50U, 61U, 62U, 63U, 100U, 125U, 126U, 127U, 200U}) {
+    for (const std::size_t around : {50U, 62U, 63U, 64U, 65U, 66U, 100U, 126U, 127U, 128U, 129U, 130U, 200U}) {
         std::vector<Vec3> points;
         for (std::uint64_t i = 0; points.size() < around; ++i) {
             const Vec3 p{2 * unit_double(mix64(around, 3 * i)) - 1, 2 * unit_double(mix64(around, 3 * i + 1)) - 1, 2 * unit_double(mix64(around, 3 * i + 2)) - 1};
