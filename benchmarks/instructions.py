@@ -50,7 +50,9 @@ def vectors():
     """The program takes other paths on processors without these."""
     try:
         with open("/proc/cpuinfo") as stream:
-            return "avx2" if re.search(r"^flags\s*:.*\bavx2\b", stream.read(), re.MULTILINE) else "none"
+            found = re.search(r"^flags\s*:(.*)$", stream.read(), re.MULTILINE)
+            words = found[1].split() if found else []
+            return "+".join(word for word in ("avx2", "fma") if word in words) or "none"
     except OSError:
         return "unknown"
 
