@@ -54,9 +54,10 @@ std::string describe(const JoinStatistics& joined, const Plc& plc) {
         list += fmt::format("{}{} at {} with {}, {:.3g} apart", i == 0 ? "" : "; ", name(j.vertex), format_point(j.vertex.where.value_or(Vec3{})), name(j.with), j.distance);
     }
     if (joined.joined.size() > kMostListed) list += fmt::format("; and {} more", joined.joined.size() - kMostListed);
-    const std::string_view rounding = joined.assumed_single_precision ? "what single precision explains" : "the rounding of its coordinates";
-    return fmt::format("{} features of the input that are closer than {} ({:.3g}) were joined{}: {}. No vertex moved, and no facet by more than {:.3g}", joined.joined.size(),
-                       rounding, joined.tolerance, joined.assumed_single_precision ? ", as no mesh could be made of it as it is" : "", list, joined.largest_move);
+    const bool assumed = joined.assumed_single_precision;
+    return fmt::format("{}{} features of the input that are closer than {} ({:.3g}) were joined: {}. No vertex moved, and no facet by more than {:.3g}",
+                       assumed ? "as no mesh could be made of it as it is, " : "", joined.joined.size(), assumed ? "what single precision explains" : "the rounding of its coordinates",
+                       joined.tolerance, list, joined.largest_move);
 }
 
 void name_facets(ValidPlc& valid, const JoinedPlc& joined) {
