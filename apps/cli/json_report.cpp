@@ -197,7 +197,10 @@ Json to_json(const GivenMeshStatistics& given) {
 Json to_json(const JoinStatistics& joined) {
     Json features = Json::array();
     for (const JoinedFeature& f : joined.joined) features.push_back({{"vertex", to_json(f.vertex)}, {"with", to_json(f.with)}, {"distance", f.distance}});
-    return {{"tolerance", joined.tolerance}, {"largest_move", joined.largest_move}, {"features", std::move(features)}};
+    return {{"tolerance", joined.tolerance},
+            {"largest_move", joined.largest_move},
+            {"assumed_single_precision", joined.assumed_single_precision},
+            {"features", std::move(features)}};
 }
 
 Json to_json(const MeshStatistics& statistics) {

@@ -58,6 +58,7 @@ struct JoinedFeature {
 struct JoinStatistics {
     double tolerance = 0;     ///< only what was nearer than this was joined, input units: the rounding of the input's coordinates
     double largest_move = 0;  ///< no point of a facet or segment went farther than this
+    bool assumed_single_precision = false;  ///< nothing says that the coordinates are that coarse, but as they are they could not be conformed to
     std::vector<JoinedFeature> joined;
 };
 

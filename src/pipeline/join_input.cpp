@@ -17,7 +17,7 @@ constexpr std::size_t kMostListed = 20;  // of the text; the statistics have all
 
 }  // namespace
 
-std::optional<JoinedPlc> join_input(const Plc& plc, const MeshOptions& options) {
+std::optional<JoinedPlc> join_input(const Plc& plc, const MeshOptions& options, bool assumed_single_precision) {
     Diagnosis found = diagnose(plc, options);
     const auto joinable = [](const Defect& d) { return d.severity != Severity::error || d.kind == DefectKind::feature_too_thin; };
     if (!std::all_of(found.defects.begin(), found.defects.end(), joinable)) return std::nullopt;
@@ -25,6 +25,7 @@ std::optional<JoinedPlc> join_input(const Plc& plc, const MeshOptions& options) 
     for (const Vec3& p : plc.vertices) rounding.largest_coordinate = std::max({rounding.largest_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     JoinedPlc joined = nothing_joined(plc, rounding.closing());
     joined.plc.relative_rounding = 0;
+    joined.statistics.assumed_single_precision = assumed_single_precision;
     MeshOptions exact = options;
     exact.coplanar_tolerance.reset();
     for (unsigned round = 0; round < kMostRounds; ++round) {
@@ -33,6 +34,12 @@ std::optional<JoinedPlc> join_input(const Plc& plc, const MeshOptions& options) 
         if (!found.has_errors()) return joined;
     }
     return std::nullopt;
+}
+
+Plc as_if_single_precision(const Plc& plc) {
+    Plc coarse = plc;
+    coarse.relative_rounding = 0x1p-24;
+    return coarse;
 }
 
 std::string describe(const JoinStatistics& joined, const Plc& plc) {
@@ -47,8 +54,10 @@ std::string describe(const JoinStatistics& joined, const Plc& plc) {
         list += fmt::format("{}{} at {} with {}, {:.3g} apart", i == 0 ? "" : "; ", name(j.vertex), format_point(j.vertex.where.value_or(Vec3{})), name(j.with), j.distance);
     }
     if (joined.joined.size() > kMostListed) list += fmt::format("; and {} more", joined.joined.size() - kMostListed);
-    return fmt::format("{} features of the input that are closer than the rounding of its coordinates ({:.3g}) were joined: {}. No vertex moved, and no facet by more than {:.3g}",
-                       joined.joined.size(), joined.tolerance, list, joined.largest_move);
+    const bool assumed = joined.assumed_single_precision;
+    return fmt::format("{}{} features of the input that are closer than {} ({:.3g}) were joined: {}. No vertex moved, and no facet by more than {:.3g}",
+                       assumed ? "as no mesh could be made of it as it is, " : "", joined.joined.size(), assumed ? "what single precision explains" : "the rounding of its coordinates",
+                       joined.tolerance, list, joined.largest_move);
 }
 
 void name_facets(ValidPlc& valid, const JoinedPlc& joined) {

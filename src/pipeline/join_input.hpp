@@ -14,7 +14,10 @@ namespace wellmesh {
 
 /// Empty if something else is wrong with the input, if what is too thin can't be joined, or if that does not make a valid complex. What rounding could
 /// explain is closed then, and the coordinates of the result count as exact: without options.coplanar_tolerance it is valid.
-[[nodiscard]] std::optional<JoinedPlc> join_input(const Plc& plc, const MeshOptions& options);
+[[nodiscard]] std::optional<JoinedPlc> join_input(const Plc& plc, const MeshOptions& options, bool assumed_single_precision = false);
+
+/// The same with the rounding that coordinates have which were single precision once, and have been moved since.
+[[nodiscard]] Plc as_if_single_precision(const Plc& plc);
 
 /// "2 gaps thinner than ... were closed: vertex 9 (line 13) at (...) and ..."
 [[nodiscard]] std::string describe(const JoinStatistics& joined, const Plc& plc);

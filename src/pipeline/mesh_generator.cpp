@@ -117,12 +117,13 @@ private:
         try {
             return fill_stated();
         } catch (const MeshError& refusal) {
-            // Slits within a coarse rounding may be found as late as when they can't be conformed to.
-            const bool late = refusal.stage() == Stage::conform && plc_.relative_rounding > 0 && !guard_.user_limit_spent() &&
-                              (refusal.code() == ErrorCode::unsupported_acute || refusal.code() == ErrorCode::internal_invariant);
+            // Slits within a coarse rounding may be found as late as when they can't be conformed to. Doubles may hide that they once were single precision.
+            const bool coarse = plc_.relative_rounding > 0 || coplanar_tolerance.has_value();
+            const bool late = refusal.stage() == Stage::conform && !guard_.user_limit_spent() &&
+                              (refusal.code() == ErrorCode::unsupported_acute || (coarse && refusal.code() == ErrorCode::internal_invariant));
             if (given_ || !(late || refusal.code() == ErrorCode::bad_input) || options_.thin_features != ThinFeatures::join) throw;
             options_.coplanar_tolerance = coplanar_tolerance;
-            joined_ = join_input(plc_, options_);
+            joined_ = late && !coarse ? join_input(as_if_single_precision(plc_), options_, true) : join_input(plc_, options_);
             if (!joined_) throw;
             refusal_ = refusal;
             return fill_joined(refusal);

@@ -114,6 +114,20 @@ TEST(ThinFeatures, StepsBetweenMarkersAreShutWhenFoundLate) {
     EXPECT_THROW((void)generate(plc, options), MeshError);
 }
 
+/// Rotated in doubles nothing says any more that the coordinates were single precision.
+TEST(ThinFeatures, StepsAreShutWhereDoublesHideThem) {
+    for (const std::uint64_t rotation : {1U, 2U, 3U}) {
+        Plc rotated = transformed(stepped_solid(), rotation, 0, 1);
+        rotated.relative_rounding = 0;
+        const MeshResult result = generate(rotated);
+        expect_joined(rotated, result);
+        EXPECT_TRUE(result.statistics.joined && result.statistics.joined->assumed_single_precision);
+        MeshOptions options;
+        options.thin_features = ThinFeatures::refuse;
+        EXPECT_THROW((void)generate(rotated, options), MeshError);
+    }
+}
+
 TEST(ThinFeatures, AreRefusedOnRequest) {
     MeshOptions options;
     options.thin_features = ThinFeatures::refuse;
