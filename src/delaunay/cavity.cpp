@@ -57,7 +57,10 @@ bool Triangulation::search_conflict_cavity(const Vec3& p, TetId near, Cavity& ca
             cavity.duplicate = v;
             return false;
         }
-    return grow_in_waves<false>(p, seed, cavity);
+    if (!is_view()) return grow_in_waves<false>(p, seed, cavity);
+    if (grow_in_waves<true>(p, seed, cavity)) return true;
+    left_zone_ = true;
+    return false;
 }
 
 }  // namespace wellmesh

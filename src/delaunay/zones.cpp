@@ -2,9 +2,11 @@
 // A triangulation split into views of zones, and put together again.
 #include "delaunay/zones.hpp"
 
+#include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
+
+#include "delaunay/local_numbers.hpp"
 
 namespace wellmesh {
 
@@ -35,9 +37,13 @@ void Triangulation::split(Workers& workers, const Zones& zones, std::size_t spar
     std::vector<std::vector<TetId>> free(zones.count());
     for (std::size_t z = 0; z < zones.count(); ++z) {
         free[z] = tets_.take_slots(spare);
-        for (const TetId t : free[z]) out.zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
+        for (const TetId t : free[z]) {
+            out.zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
+            tets_.empty(t);
+        }
     }
-    if (epoch_ > std::numeric_limits<std::uint32_t>::max() / 2) {
+    renew_stamps(StampedNumbers::kLastStamp / 2);  // for the views: as many insertions each before numbers are found more slowly
+    if (epoch_ > kLastEpoch / 2) {
         std::fill(mark_.begin(), mark_.end(), 0U);
         epoch_ = 0;
     }
@@ -48,6 +54,7 @@ void Triangulation::split(Workers& workers, const Zones& zones, std::size_t spar
 
 void Triangulation::join(const Triangulation& view) {
     epoch_ = std::max(epoch_, view.epoch_);
+    stamp_ = std::max(stamp_, view.stamp_);
     tets_.take_back(view.tets_);
 }
 
