@@ -180,7 +180,7 @@ public:
         std::vector<TetId> old_of;        ///< for each new id the old one
         std::vector<std::uint8_t> turns;  ///< by the old id: how its corners were turned
         /// Where corner k of new tetrahedron t was.
-        [[nodiscard]] unsigned old_corner(TetId t, unsigned k) const { return turns[old_of[t.index()].index()] >> (2 * k) & 3U; }
+        [[nodiscard]] unsigned old_corner(TetId t, unsigned k) const { return static_cast<unsigned>(turns[old_of[t.index()].index()]) >> (2 * k) & 3U; }
     };
     /// Numbers the tetrahedra in canonical order, without gaps, their corners in canonical order, too. Ids from before are void.
     Renumbering renumber(Workers& workers);

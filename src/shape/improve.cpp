@@ -20,7 +20,7 @@ constexpr double kVertexBudget = 1.5;     // splits may not add more than half t
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
 constexpr std::uint64_t kCascadeCeiling = 2, kCascadeAllowance = 10000;  // beyond the budget; more is a cascade beside an acute angle
 constexpr unsigned kMostCascades = 16;    // that are undone, one tetrahedron each given up, before a round of splits is
-constexpr unsigned kLastTries = 3;
+constexpr unsigned kLastTries = 5;
 constexpr double kRungDeg = 5;
 constexpr double kFirstRungDeg = 30;      // of moves alone, which mostly reach it, and do so better straight away than from rung to rung
 constexpr double kStraightDeg = 35;       // goals up to this are mostly reached, and are aimed at straight away
@@ -278,7 +278,8 @@ RunGuard::Verdict ShapeImprover::try_afresh() {
         const std::size_t before = left().size();
         verdict = split_or_go_back(judge_.goal(), last);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
-        if (left().size() < before && !guard_.has_too_many(mesh_.vertex_count())) continue;
+        // A few less now and then is luck, and leaves what only another grading can do to the next try.
+        if (worth_it(before, left().size()) && !guard_.has_too_many(mesh_.vertex_count())) continue;
         mesh_ = last;
         mending_.collect(workers_);
         if (verdict == RunGuard::Verdict::go_on) verdict = grade_afresh();
