@@ -285,14 +285,24 @@ Claim PlcComparison::segments() const {
     return claim.decided();
 }
 
+/// Signed.
+long double cone_volume(const Vec3& tip, const Corners& base) {
+    const auto from_tip = [&](const Vec3& x) {
+        return std::array<long double, 3>{static_cast<long double>(x.x) - static_cast<long double>(tip.x), static_cast<long double>(x.y) - static_cast<long double>(tip.y),
+                                          static_cast<long double>(x.z) - static_cast<long double>(tip.z)};
+    };
+    const auto a = from_tip(base[0]), b = from_tip(base[1]), d = from_tip(base[2]);
+    return (a[0] * (b[1] * d[2] - b[2] * d[1]) + a[1] * (b[2] * d[0] - b[0] * d[2]) + a[2] * (b[0] * d[1] - b[1] * d[0])) / 6;
+}
+
 Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
     ClaimBuilder claim = builder(7);
     struct Sum {
         long double volume = 0, area = 0;
+        std::optional<Vec3> origin{};  // a point of its own: a small region far from another one's would drown in the cones' rounding
     };
     std::map<std::int32_t, Sum> sums;
     const auto& triangles = surface_.triangles.triangles();
-    const Vec3 origin = triangles.front()[0];
     std::vector<TriangleTree::Nearest> separators(triangles.size(), {0, std::numeric_limits<double>::infinity()});
     if (!separating_.empty()) mesh_.workers().for_ranges(triangles.size(), kSmallGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) separators[i] = separators_->nearest(centroid_of(triangles[i]), i == begin ? 0 : separators[i - 1].triangle);
@@ -304,18 +314,13 @@ Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
         const ConstraintTriangle& c = constraints_[separating_[nearest.triangle]];
         const auto& [p, q, r] = separators_->triangles()[nearest.triangle];
         const bool same_way = dot(cross(q - p, r - p), cross(t[1] - t[0], t[2] - t[0])) > 0;
-        using LongVec = std::array<long double, 3>;
-        const auto from_origin = [&](const Vec3& x) {
-            return LongVec{static_cast<long double>(x.x) - static_cast<long double>(origin.x), static_cast<long double>(x.y) - static_cast<long double>(origin.y),
-                           static_cast<long double>(x.z) - static_cast<long double>(origin.z)};
-        };
-        const LongVec a = from_origin(t[0]), b = from_origin(t[1]), d = from_origin(t[2]);
-        const long double cone = (a[0] * (b[1] * d[2] - b[2] * d[1]) + a[1] * (b[2] * d[0] - b[0] * d[2]) + a[2] * (b[0] * d[1] - b[1] * d[0])) / 6;
         for (std::size_t side = 0; side < 2; ++side) {
             if (c.tets[side] == kNone) continue;
             // Side 0 is where c's normal points to: there the triangle's outward normal is the opposite one.
             const bool outward = (side == 0) != same_way;
             Sum& sum = sums[mesh_.region(c.tets[side])];
+            if (!sum.origin) sum.origin = t[0];
+            const long double cone = cone_volume(*sum.origin, t);
             sum.volume += outward ? cone : -cone;
             sum.area += static_cast<long double>(area_of(t));
         }
@@ -326,7 +331,7 @@ Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
         claim.checked(1);
         const double allowed = static_cast<double>(sum.area) * tolerance_ + 1e-12 * std::abs(r.volume), difference = std::abs(r.volume - *r.plc_volume);
         if (!(difference <= allowed))
-            claim.violated(EntityKind::region, static_cast<std::uint64_t>(std::max(r.region, 0)), origin, [&] {
+            claim.violated(EntityKind::region, static_cast<std::uint64_t>(std::max(r.region, 0)), sum.origin.value_or(Vec3{}), [&] {
                 return fmt::format("region {} has volume {:.12g}, the PLC's cells have {:.12g}: a difference of {:.3g}, allowed is {:.3g}", r.region, r.volume, *r.plc_volume, difference, allowed);
             });
     }

@@ -37,6 +37,12 @@ std::array<Minor, 3> exact_cross(const Difference& p, const Difference& q) {
 
 }  // namespace
 
+bool is_thin(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const Vec3 u = b - a, v = c - a, w = d - a;
+    const double squared_longest = std::max({squared_norm(u), squared_norm(v), squared_norm(w), squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
+    return !(determinant(u, v, w) > kThinVolume * squared_longest * std::sqrt(squared_longest));
+}
+
 Circumsphere exact_circumsphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const Difference u = difference(a, b), v = difference(a, c), w = difference(a, d);
     const auto vw = exact_cross(v, w), wu = exact_cross(w, u), uv = exact_cross(u, v);

@@ -12,6 +12,10 @@ struct Circumsphere {
     double six_volumes = 0;  ///< signed
 };
 
+/// Six volumes of no more than this part of the cubed longest edge are noise in rounded arithmetic, and so is what is derived from them.
+inline constexpr double kThinVolume = 1e-10;
+[[nodiscard]] bool is_thin(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
 /// In rounded arithmetic where that keeps ten digits, else by exact_circumsphere.
 [[nodiscard]] Circumsphere careful_circumsphere(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 

@@ -15,7 +15,7 @@ namespace {
 
 /// Beyond this R/L the circumcentre in doubles is noise: the tetrahedron is split at a labelled face or at its longest edge.
 constexpr double kFlatRadiusEdge = 1e6;
-constexpr double kFlatVolume = 1e-10;  // of the cubed longest edge: dihedral angles of about 1e-8 degrees
+constexpr double kFlatVolume = 1e-10;  // of the longest edge squared, times the shortest: dihedral angles of about 1e-8 degrees
 
 /// Are all corners on one facet? For four input vertices, which lie on many, the answer is always yes.
 bool is_within_facet(const ConformingMesh& mesh, const TetStore::Corners& corners) {
@@ -72,10 +72,11 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
     // No thicker than what rounding does to points of one facet: its circumsphere is noise, however ordinary it looks. Elsewhere points are where they are.
     const double squared_longest = std::max({lu, lv, lw, squared_norm(v - u), squared_norm(w - u), squared_norm(w - v)});
     const double longest = std::sqrt(squared_longest);
-    if (!(six_volume > kFlatVolume * longest * squared_longest) || (!(six_volume > rounding_ * squared_longest) && is_within_facet(mesh_, corners))) {
+    if (!(six_volume > rounding_ * squared_longest) && is_within_facet(mesh_, corners)) {
         squared_badness = std::numeric_limits<double>::infinity();
         return Fault::flat;
     }
+    if (!(six_volume > kThinVolume * longest * squared_longest)) return classify_thin(t, squared_longest, squared_badness);
     if (!(squared_radius < kFlatRadiusEdge * kFlatRadiusEdge * squared_edge)) {
         squared_badness = std::numeric_limits<double>::infinity();
         return Fault::flat;
@@ -85,6 +86,23 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
     squared_badness = squared_radius / squared_edge;
     if (squared_badness > max_radius_edge_ * max_radius_edge_) return Fault::radius_edge;
     return sliver_fault(t, six_volume, squared_edge, squared_badness);
+}
+
+/// Flat, or a needle between a coarse and a fine part: that has little volume, too, but a sound circumsphere, which is computed exactly.
+Refiner::Fault Refiner::classify_thin(TetId t, double squared_longest, double& squared_badness) const {
+    const auto& k = mesh_.tets().corners(t);
+    const Vec3 &a = mesh_.point(k[0]), &b = mesh_.point(k[1]), &c = mesh_.point(k[2]), &d = mesh_.point(k[3]);
+    const double squared_edge = shortest_edge_squared(a, b, c, d);
+    const Circumsphere sphere = exact_circumsphere(a, b, c, d);
+    const double squared_radius = sphere.radius * sphere.radius;
+    squared_badness = std::numeric_limits<double>::infinity();
+    if (!(sphere.six_volumes > kFlatVolume * squared_longest * std::sqrt(squared_edge)) || !(squared_radius < kFlatRadiusEdge * kFlatRadiusEdge * squared_edge)) return Fault::flat;
+    const TetSize size = sizes_.of(a, b, c, d, mesh_.cell(t));
+    squared_badness = squared_radius;
+    if (squared_radius > squared_size_slack_ * size.max_squared_circumradius || sphere.six_volumes > 6 * size.max_volume) return Fault::size;
+    squared_badness = squared_radius / squared_edge;
+    if (squared_badness > max_radius_edge_ * max_radius_edge_) return Fault::radius_edge;
+    return sliver_fault(t, sphere.six_volumes, squared_edge, squared_badness);
 }
 
 /// An edge that an acute angle of the input made short would be made anew, and shorter.

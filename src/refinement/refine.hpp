@@ -92,6 +92,7 @@ private:
     void clear_around(VertexId v);
     void insert_off_centre(TetId t, const Vec3& centre, InsertionReason reason);
     [[nodiscard]] Fault classify_strictly(TetId t, double& squared_badness) const;
+    [[nodiscard]] Fault classify_thin(TetId t, double squared_longest, double& squared_badness) const;
     [[nodiscard]] bool strict() const { return boundary_.rules.strict; }
     bool star_is_good(const Cavity& cavity, const Placement& where) const;
     bool star_has_small_sliver(const Cavity& cavity, const Placement& where, double radius);

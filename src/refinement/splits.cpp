@@ -153,7 +153,12 @@ void Refiner::process(TetId t, InsertionReason reason) {
         return;
     }
     double radius = 0;
-    const Vec3 centre = flush_to_exact_range(circumcentre(a, b, c, d, &radius));
+    Vec3 centre = flush_to_exact_range(circumcentre(a, b, c, d, &radius));
+    if (is_thin(a, b, c, d)) {
+        const Circumsphere sphere = exact_circumsphere(a, b, c, d);
+        centre = flush_to_exact_range(sphere.centre);
+        radius = sphere.radius;
+    }
     judging_ = sliver_rule_ || sliver_cosine_ < 1;
     if (!sliver_rule_ && judging_ && reason == InsertionReason::size) {
         const TetSize size = sizes_.of(a, b, c, d, mesh_.cell(t));

@@ -16,10 +16,15 @@ namespace wellmesh {
 namespace {
 
 constexpr double kRight = std::numbers::pi / 2;
+/// What is meshed are the coordinates as they are: an angle of a feature as small as their rounding may have been right once, but refinement would not end at it.
+constexpr double kMostSlack = 10 * std::numbers::pi / 180;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 Vec3 unit(const Vec3& a) { return (1 / norm(a)) * a; }
+
+/// Or obtuse, but for rounding.
+bool is_right(double angle, double slack) { return angle >= kRight - std::min(slack, kMostSlack); }
 
 /// A segment as seen from one of its ends.
 struct Ray {
@@ -124,7 +129,7 @@ void SharpFeatureFinder::at_segment(std::uint32_t s, std::span<const std::uint32
         if (&p == &q) continue;
         double angle = q.angle - p.angle;
         if (angle < 0) angle += 2 * std::numbers::pi;
-        if (angle >= smallest || angle >= kRight - p.slack - q.slack) continue;
+        if (angle >= smallest || is_right(angle, p.slack + q.slack)) continue;
         smallest = angle;
         const ValidFacet& f = plc_.facets[p.facet];
         const CellId between = f.cells[dot(f.normal, cross(u, p.direction)) > 0 ? 0 : 1];
@@ -156,7 +161,7 @@ double SharpFeatureFinder::smallest_between_rays(std::vector<Ray>& rays) const {
         for (std::size_t j = i + 1; j < rays.size() && rays[j].direction.x - rays[i].direction.x <= chord; ++j) {
             if (squared_distance(rays[i].direction, rays[j].direction) > chord * chord) continue;
             const double angle = angle_between(rays[i].direction, rays[j].direction);
-            if (angle >= smallest || angle >= kRight - rays[i].slack - rays[j].slack) continue;
+            if (angle >= smallest || is_right(angle, rays[i].slack + rays[j].slack)) continue;
             smallest = angle;
             chord = std::min(chord, 2 * std::sin(angle / 2) * (1 + 1e-9));
         }
@@ -181,7 +186,7 @@ double SharpFeatureFinder::smallest_to_facets(VertexId v, const std::vector<Ray>
             const Vec3 foot = ray->direction - up * facet.normal;
             if (dot(cross(a, foot), facet.normal) <= 0 || dot(cross(foot, b), facet.normal) <= 0) continue;  // not over the wedge
             const double angle = std::atan2(std::abs(up), norm(foot));
-            if (angle >= smallest || angle >= kRight - ray->slack - facet_slack_[t.facet]) continue;
+            if (angle >= smallest || is_right(angle, ray->slack + facet_slack_[t.facet])) continue;
             if (std::binary_search(facet.segments.begin(), facet.segments.end(), SegmentId{ray->segment})) continue;
             smallest = angle;
         }
