@@ -195,13 +195,18 @@ TEST(Triangulation, RemovalThenInsertionRestores) {
     }
 }
 
-TEST(Triangulation, JoinsAVertexWithThousandsOfNeighbours) {
-    // The centre of a sphere of points is a neighbour of them all: more than the table of edges has cells at its largest (128 x 128).
+std::vector<Vec3> points_of_sphere(std::size_t count, std::uint64_t seed) {
     std::vector<Vec3> points;
-    for (std::uint64_t i = 0; points.size() < 20000; ++i) {
-        const Vec3 p{2 * unit_double(mix64(9, 3 * i)) - 1, 2 * unit_double(mix64(9, 3 * i + 1)) - 1, 2 * unit_double(mix64(9, 3 * i + 2)) - 1};
+    for (std::uint64_t i = 0; points.size() < count; ++i) {
+        const Vec3 p{2 * unit_double(mix64(seed, 3 * i)) - 1, 2 * unit_double(mix64(seed, 3 * i + 1)) - 1, 2 * unit_double(mix64(seed, 3 * i + 2)) - 1};
         if (squared_norm(p) > 0.1 && squared_norm(p) <= 1) points.push_back((1 / norm(p)) * p);
     }
+    return points;
+}
+
+TEST(Triangulation, JoinsAVertexWithThousandsOfNeighbours) {
+    // The centre of a sphere of points is a neighbour of them all: more than the table of edges has cells at its largest (128 x 128).
+    std::vector<Vec3> points = points_of_sphere(20000, 9);
     Triangulation mesh = triangulate(points);
     const VertexId centre = mesh.add_point({1e-3, -2e-3, 1e-3});
     Cavity cavity;
@@ -216,11 +221,7 @@ TEST(Triangulation, JoinsAVertexWithThousandsOfNeighbours) {
 /// Around a centre: cavities on both sides of what each kind of numbers and table is for (local_numbers.hpp).
 TEST(Triangulation, JoinsVerticesWithAnyNumberOfNeighbours) {
     for (const std::size_t around : {50U, 62U, 63U, 64U, 65U, 66U, 100U, 126U, 127U, 128U, 129U, 130U, 200U}) {
-        std::vector<Vec3> points;
-        for (std::uint64_t i = 0; points.size() < around; ++i) {
-            const Vec3 p{2 * unit_double(mix64(around, 3 * i)) - 1, 2 * unit_double(mix64(around, 3 * i + 1)) - 1, 2 * unit_double(mix64(around, 3 * i + 2)) - 1};
-            if (squared_norm(p) > 0.1 && squared_norm(p) <= 1) points.push_back((1 / norm(p)) * p);
-        }
+        std::vector<Vec3> points = points_of_sphere(around, around);
         Triangulation mesh = triangulate(points);
         const VertexId centre = mesh.add_point({1e-3, -2e-3, 1e-3});
         Cavity cavity;
