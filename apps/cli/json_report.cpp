@@ -205,6 +205,9 @@ Json to_json(const JoinStatistics& joined) {
 
 Json to_json(const MeshStatistics& statistics) {
     Json json;
+    if (const auto& gaps = statistics.gaps)
+        json["gaps"] = {{"side", to_json(gaps->side)},       {"other_side", to_json(gaps->other_side)}, {"width", gaps->width}, {"narrowest", gaps->narrowest},
+                        {"filled_from", gaps->filled_from}, {"vertices", gaps->vertices},             {"tets", gaps->tets}};
     if (statistics.joined) json["joined"] = to_json(*statistics.joined);
     json["cells"] = to_json(statistics.cells);
     if (statistics.given) json["given_mesh"] = to_json(*statistics.given);

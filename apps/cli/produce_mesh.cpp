@@ -135,7 +135,7 @@ int run(const MeshJob& job, Interrupt& interrupt, const std::function<void()>& r
 void add_job_flags(CLI::App& command, MeshJob& job) {
     add_output_flag(command, job.outputs, "mesh to write: .mesh .vtu .msh .inp .node/.ele, by extension; may be given several times");
     add_write_flags(command, job.write);
-    command.add_option("--exemptions", job.exemptions, "write the tetrahedra that the input's acute angles force below the goals: number, feature, angle, a line each")
+    command.add_option("--exemptions", job.exemptions, "write the tetrahedra that the input's acute angles or too narrow gaps keep below the goals: number, feature, angle, a line each")
         ->type_name("FILE");
     add_json_flag(command, job.json);
     command.add_flag("--quiet", job.quiet, "no report and no progress line; errors still go to standard error");

@@ -135,8 +135,12 @@ std::string render_invariants(const InvariantReport& report) {
 }
 
 std::string render_exemptions(const MeshResult& result) {
-    const Exemption& sharpest = *std::min_element(result.exemptions.begin(), result.exemptions.end(), [](const Exemption& a, const Exemption& b) { return a.angle_deg < b.angle_deg; });
     const ShapeStatistics& all = result.certificate.all;
+    const auto angle = [](const Exemption& e) { return e.angle_deg > 0 ? e.angle_deg : 180; };  // gaps have none
+    const Exemption& sharpest = *std::min_element(result.exemptions.begin(), result.exemptions.end(), [&](const Exemption& a, const Exemption& b) { return angle(a) < angle(b); });
+    if (!(sharpest.angle_deg > 0))
+        return fmt::format("note: {} tetrahedra lie in gaps that are left and are exempt: {:.4g} degrees and R/L {:.4g} with them; --exemptions FILE lists them\n",
+                           result.exemptions.size(), all.min_dihedral_angle_deg, all.max_radius_edge_ratio);
     return fmt::format("note: {} tetrahedra miss a goal because acute angles of the input force them to, and are exempt: {:.4g} degrees and R/L {:.4g} with them; the sharpest angle is\n"
                        "      {:.4g} degrees at {}; --exemptions FILE lists them\n",
                        result.exemptions.size(), all.min_dihedral_angle_deg, all.max_radius_edge_ratio, sharpest.angle_deg, describe(sharpest.feature));

@@ -62,7 +62,19 @@ struct JoinStatistics {
     std::vector<JoinedFeature> joined;
 };
 
+/// Gaps between features of the input without a common point that are so narrow that filling them with tetrahedra within the goals would take far too many.
+/// The mesh conforms there, no more; elsewhere it keeps its goals.
+struct GapStatistics {
+    ElementRef side, other_side;  ///< of the gap that takes most, with a place on each
+    double width = 0;             ///< there, input units
+    double narrowest = 0;         ///< width of the narrowest one
+    double filled_from = 0;       ///< gaps at least this wide are filled
+    double vertices = 0;          ///< that filling the others would take, about
+    std::uint64_t tets = 0;       ///< that join the sides of such gaps and miss a goal for their shape; they are among the exemptions
+};
+
 struct MeshStatistics {
+    std::optional<GapStatistics> gaps{};  ///< if any were left
     std::optional<JoinStatistics> joined{};  ///< if anything was
     std::optional<GivenMeshStatistics> given{};  ///< improve() only
     std::vector<StageTime> stages;
@@ -85,7 +97,7 @@ struct MeshResult {
     Certificate certificate;
     MeshStatistics statistics;
     std::vector<AskedAchieved> goals;
-    /// Tetrahedra that miss a goal for their shape because the input's acute angles force them to, ascending; goals and certificate leave them out.
+    /// Tetrahedra that miss a goal for their shape because the input's acute angles force them to, or because they lie in gaps that were left, ascending; goals and certificate leave them out.
     std::vector<Exemption> exemptions;
     std::optional<InvariantReport> invariants{};  ///< if MeshOptions ask for it
 };

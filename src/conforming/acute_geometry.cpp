@@ -22,8 +22,8 @@ constexpr double kStretch = 0.2;
 
 }  // namespace
 
-AcuteGeometry::AcuteGeometry(const ValidPlc& plc) : plc_(&plc), any_(!plc.acute_features.empty()) {
-    if (!any_) return;
+AcuteGeometry::AcuteGeometry(const ValidPlc& plc, bool has_narrow_gaps) : plc_(&plc), any_(!plc.acute_features.empty()), copies_(any_ || has_narrow_gaps) {
+    if (!copies_) return;
     acute_deg_.assign(plc.vertices.size(), 180);
     const auto note = [&](std::uint32_t v, double angle) { acute_deg_[v] = std::min(acute_deg_[v], angle); };
     for (const AcuteFeature& f : plc.acute_features) {

@@ -28,10 +28,13 @@ struct CarriedWitness {
 
 class AcuteGeometry {
 public:
-    explicit AcuteGeometry(const ValidPlc& plc);
+    /// @param has_narrow_gaps  features that do not meet have to copy each other, too
+    explicit AcuteGeometry(const ValidPlc& plc, bool has_narrow_gaps = false);
 
     /// Is there any acute angle at all? If not, nothing below is ever needed.
     [[nodiscard]] bool any() const { return any_; }
+    /// Are there features that encroach each other wherever they are split, unless they copy each other?
+    [[nodiscard]] bool copies() const { return copies_; }
 
     /// Radius of the ball about an input vertex that stays empty: a third of the local feature size if the vertex is acute or ends an acute
     /// segment, else 0. Found when first asked for.
@@ -87,7 +90,7 @@ private:
     [[nodiscard]] const Vec3& point(VertexId v) const { return plc_->vertices[v.index()]; }
 
     const ValidPlc* plc_;
-    bool any_ = false;
+    bool any_ = false, copies_ = false;
     std::vector<double> acute_deg_;  // smallest acute angle at each input vertex; 180: none
     std::vector<double> ball_;  // radii; below 0: not found yet
     std::optional<LocalFeatureSize> feature_size_;

@@ -183,7 +183,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const 
     const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b);
     const std::uint64_t key = mix64(seed_, mix64(std::min(s.a, s.b).value(), std::max(s.a, s.b).value()));
     const Placement where = Placement::on_segment(s);
-    if (acute_.any()) {
+    if (acute_.copies()) {
         const auto place = place_on_segment(s, request);
         if (!place) return SplitOutcome::refused;
         if (request.for_conformity() || place->info.ball.valid()) return split_acute(s, *place, request);
@@ -253,7 +253,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
     const ValidFacet& facet = mesh_.plc().facets[s.facet.index()];
     const Placement where = Placement::on_facet(s.facet);
     Triangulation& tri = mesh_.triangulation();
-    if (acute_.any()) {
+    if (acute_.copies()) {
         if (request.for_conformity()) return split_acute(s.facet, s.corners, true, face.tet(), request);
         for (VertexId v = fan_apex(s.corners); v.valid(); v = fan_apex(s.corners)) {
             if (request.reason != InsertionReason::boundary_by_size) return SplitOutcome::refused;
@@ -276,7 +276,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
     if (!encroached_segments_.empty()) {
         const std::vector<Subsegment> targets = encroached_segments_;
         SplitRequest passed = request;
-        if (acute_.any()) passed.witness = CarriedWitness{cavity_.point, CarrierKind::facet, s.facet.value()};
+        if (acute_.copies()) passed.witness = CarriedWitness{cavity_.point, CarrierKind::facet, s.facet.value()};
         passed.rejected = record(request, VertexId{}, cavity_.point, recorder ? distance_to_nearest(mesh_, cavity_) : 0, true, centre, radius, s.corners[0], s.corners[1],
                                  s.corners[2]);
         passed.projection_depth = 0;

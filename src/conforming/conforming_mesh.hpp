@@ -194,7 +194,10 @@ public:
     /// Facets and segments that lost a piece since the last call.
     [[nodiscard]] std::vector<FacetId> take_broken_facets();
     [[nodiscard]] std::vector<SegmentId> take_broken_segments();
-    [[nodiscard]] bool has_broken() const { return !broken_facets_.empty() || !broken_segments_.empty(); }
+    [[nodiscard]] bool has_broken() const { return !broken_facets_.empty() || !lost_.empty() || !broken_segments_.empty(); }
+    /// Subfaces that are gone with nothing in their place: of the broken facets those that are broken nowhere else may be mended where they are. A vertex
+    /// on the facet and inside the equatorial sphere of a lost face takes its place.
+    [[nodiscard]] const std::vector<Subface>& lost_faces() const { return lost_; }
 
     /// The subsegment or subface in the last state of the mesh, if it is one.
     [[nodiscard]] TetId find_subsegment(const Subsegment& s);  ///< a tetrahedron with the labelled edge, or invalid
@@ -213,6 +216,7 @@ private:
         FacetId facet{};
         std::uint32_t boundary = kNotOnBoundary;  // index of the cavity's boundary face that it is
         bool used = false;
+        bool lost = false;  // it is none any more: the next of the facet's lost faces
         static constexpr std::uint32_t kNotOnBoundary = 0xffffffffU;
     };
     struct LoopEdge {
@@ -251,7 +255,8 @@ private:
     std::vector<std::vector<VertexId>> on_segment_;  // and on each segment
     std::vector<char> facet_labelled_;
     std::vector<TetId> forgotten_;
-    std::vector<FacetId> broken_facets_;
+    std::vector<FacetId> broken_facets_;  // other than by lost_
+    std::vector<Subface> lost_;
     std::vector<SegmentId> broken_segments_;
 
     // scratch of one insertion

@@ -9,6 +9,17 @@
 namespace wellmesh {
 namespace {
 
+constexpr double kGapAngle = 0;  // the sides of a gap do not meet
+
+/// The feature of the input that carries a vertex on the boundary, in the source's numbers.
+ElementRef feature_of(const ConformingMesh& mesh, VertexId v, std::uint32_t first_number) {
+    const VertexInfo& i = mesh.info(v);
+    const ValidPlc& plc = mesh.plc();
+    if (i.carrier == CarrierKind::input_vertex) return {EntityKind::vertex, plc.source_vertex[i.carrier_id] + first_number, mesh.point(v)};
+    if (i.carrier == CarrierKind::segment) return {EntityKind::segment, i.carrier_id + 1U, mesh.point(v)};
+    return {EntityKind::facet, plc.facets[i.carrier_id].source_facet + 1U, mesh.point(v)};
+}
+
 std::array<std::uint32_t, 4> sorted(std::array<std::uint32_t, 4> corners) {
     std::sort(corners.begin(), corners.end());
     return corners;
@@ -20,7 +31,7 @@ std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::ve
                                        std::uint32_t first_number) {
     std::vector<Exemption> out;
     const ValidPlc& plc = mesh.plc();
-    if (plc.acute_features.empty()) return out;
+    if (!refiner.may_excuse()) return out;
     const QualityGoals& goals = options.quality;
     const double angle = std::max(goals.min_dihedral_angle_deg, goals.min_dihedral_boundary_deg.value_or(0));
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -28,12 +39,28 @@ std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::ve
         const TetShape shape = shape_of(mesh.point(c[0]), mesh.point(c[1]), mesh.point(c[2]), mesh.point(c[3]));
         if (shape.radius_edge <= goals.max_radius_edge_ratio && shape.min_dihedral_deg >= angle) continue;
         const auto by = refiner.forced_by(order[i]);
-        if (!by) continue;
+        if (!by) {
+            if (const auto sides = refiner.gaps().sides_joined_by(mesh, order[i])) out.push_back({i, feature_of(mesh, (*sides)[0], first_number), kGapAngle});
+            continue;
+        }
         const bool segment = by->kind == EntityKind::segment;
         const Vec3 where = segment ? plc.vertices[plc.segments[by->id].ends[0].index()] : plc.vertices[by->id];
         out.push_back({i, {by->kind, segment ? by->id + 1U : plc.source_vertex[by->id] + first_number, where}, by->angle_deg});
     }
     return out;
+}
+
+std::optional<GapStatistics> gaps_left(const std::vector<Exemption>& exemptions, const ConformingMesh& mesh, const Refiner& refiner, std::uint32_t first_number) {
+    const auto& left = refiner.gaps().left();
+    if (!left) return std::nullopt;
+    const auto tets = std::count_if(exemptions.begin(), exemptions.end(), [](const Exemption& e) { return e.angle_deg == kGapAngle; });
+    return GapStatistics{feature_of(mesh, left->sides[0], first_number),
+                         feature_of(mesh, left->sides[1], first_number),
+                         left->width,
+                         left->narrowest,
+                         left->filled_from,
+                         left->vertices,
+                         static_cast<std::uint64_t>(tets)};
 }
 
 ExemptionKeeper::ExemptionKeeper(const TetMesh& mesh, std::vector<Exemption> exemptions) {

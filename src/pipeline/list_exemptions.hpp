@@ -4,21 +4,26 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
 #include "refinement/refine.hpp"
 #include "wellmesh/exemption.hpp"
 #include "wellmesh/options.hpp"
+#include "wellmesh/result.hpp"
 #include "wellmesh/tet_mesh.hpp"
 
 namespace wellmesh {
 
-/// The tetrahedra, in the order of the output, that miss a quality goal and touch an acute feature of the input. Others that miss one are not
-/// excused.
+/// The tetrahedra, in the order of the output, that miss a quality goal and touch an acute feature of the input, or lie in a gap that was left. Others
+/// that miss one are not excused.
 /// @param first_number  of vertices in the source's own counting.
 [[nodiscard]] std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
                                                      std::uint32_t first_number);
+
+/// Of the gaps that were left, if any, and how many of the exemptions lie in them.
+[[nodiscard]] std::optional<GapStatistics> gaps_left(const std::vector<Exemption>& exemptions, const ConformingMesh& mesh, const Refiner& refiner, std::uint32_t first_number);
 
 /// The exemptions of a mesh whose tetrahedra are about to change. Those that come out of it as they were stay exempt, under their new number; new ones
 /// never are.

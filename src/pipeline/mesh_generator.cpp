@@ -30,6 +30,7 @@
 #include "refinement/refine.hpp"
 #include "sizing/entity_sizes.hpp"
 #include "strategies/sliver_strategies.hpp"
+#include "validation/gap_demand.hpp"
 #include "validation/valid_plc.hpp"
 #include "wellmesh/generate.hpp"
 #include "wellmesh/improve.hpp"
@@ -179,8 +180,10 @@ private:
         ConformingMesh mesh = timed(Stage::delaunay, [&] { return start(valid); });
         require_room(options_.limits, mesh.vertex_count(), guard_.stage());
         const bool acute = !valid.acute_features.empty();
-        if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 20'000);
-        AcuteGeometry acute_geometry(valid);
+        // Where the input is acute features copy each other anyway.
+        const double enough = most_for_gaps(options_.limits, 0);
+        AcuteGeometry acute_geometry(valid, !acute && options_.mode != Mode::certified && vertices_for_gaps(valid, enough) > enough);
+        if (acute_geometry.copies()) guard_.set_ceiling(40 * mesh.vertex_count() + 20'000);
         BoundaryRefiner boundary(mesh, guard_, options_.seed, acute_geometry);
         const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);
         const auto count = [&] {
@@ -204,7 +207,11 @@ private:
         const bool certified = options_.mode == Mode::certified;
         if (certified) set_sliver_rule(refiner, options_);
         else prepare_refinement(refiner, boundary, options_);
-        if (acute) guard_.set_ceiling(40 * mesh.vertex_count() + 300'000 + 4 * static_cast<std::uint64_t>(std::min(refiner.sizes().expected_vertices(), 4e9)));
+        const double vertices = static_cast<double>(mesh.vertex_count()), for_size = 4 * std::min(refiner.sizes().expected_vertices(), 4e9);
+        if (!certified) refiner.leave_gaps(most_for_gaps(options_.limits, 40 * vertices + 300'000 + for_size));
+        // Where two edges cross with no more than a left gap between them copies may chase each other.
+        const double ordinary = refiner.gaps().any() ? 10 * vertices + 20'000 : 40 * vertices + 300'000;
+        if (acute_geometry.copies()) guard_.set_ceiling(static_cast<std::uint64_t>(ordinary + for_size + 4 * refiner.gaps().expected_vertices()));
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
             // The published ways have no seeds: they begin with what Delaunay refinement makes.
@@ -233,6 +240,8 @@ private:
         result_.mesh = extract_mesh(mesh, order);
         result_.mesh.names = plc_.names;
         result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number);
+        result_.statistics.gaps = gaps_left(result_.exemptions, mesh, refiner, plc_.first_number);
+        if (result_.statistics.gaps) result_.statistics.notes.push_back(describe(*result_.statistics.gaps));
         size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());
         if (verdict == RunGuard::Verdict::go_on && exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {

@@ -32,6 +32,9 @@ void require_room(const Limits& limits, std::size_t vertices, Stage stage);
 /// @param expected  vertices. @throws MeshError{mesh_too_large}
 void refuse_hopeless(const Limits& limits, double expected);
 
+/// Vertices that may be spent on gaps between features of the input; gaps that would take more are left. @param ordinary  a bound on those of all else
+[[nodiscard]] double most_for_gaps(const Limits& limits, double ordinary);
+
 /// Whether a claim about anything but goals is.
 [[nodiscard]] bool is_refuted(const Certificate& certificate);
 

@@ -123,6 +123,8 @@ void report_goals(MeshResult& result, const MeshOptions& options, const ValidPlc
         }, false);
         result.goals.push_back(volume);
     }
+    if (const auto& gaps = result.statistics.gaps)
+        result.goals.push_back({"narrowest gap filled", gaps->narrowest, gaps->filled_from, false, gaps->tets, {gaps->side, gaps->other_side}});
     result.goals.insert(result.goals.end(), sizes.begin(), sizes.end());
     if (result.termination == Termination::goals_met &&
         std::any_of(result.goals.begin(), result.goals.end(), [](const AskedAchieved& g) { return !g.met; }))

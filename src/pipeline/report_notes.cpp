@@ -25,6 +25,13 @@ void note_input(MeshResult& result, const MeshOptions& options, const Plc& plc, 
         notes.emplace_back("the input states sizes at its vertices, which count");
 }
 
+std::string describe(const GapStatistics& gaps) {
+    const auto name = [](const ElementRef& side) { return fmt::format("{} {}", to_string(side.kind), side.number); };
+    const Vec3 p = gaps.side.where.value_or(Vec3{});
+    return fmt::format("{} and {} are {:.4g} apart near ({}, {}, {}): filling gaps so narrow would take about {:.0e} vertices, so {} tetrahedra that join their sides stay below the goals",
+                       name(gaps.side), name(gaps.other_side), gaps.width, p.x, p.y, p.z, gaps.vertices, gaps.tets);
+}
+
 void note_lower_angle(MeshResult& result) {
     const double now = result.certificate.all.min_dihedral_angle_deg;
     if (!result.statistics.given || now >= result.statistics.given->min_dihedral_angle_deg * (1 - 1e-9)) return;

@@ -107,7 +107,9 @@ Refiner::Fault Refiner::classify_thin(TetId t, double squared_longest, double& s
 
 /// An edge that an acute angle of the input made short would be made anew, and shorter.
 bool Refiner::is_forced(TetId t, Fault fault) const {
-    if (fault != Fault::radius_edge && fault != Fault::flat) return false;
+    if (fault == Fault::none || fault == Fault::size) return false;
+    if (is_in_gap(t)) return true;
+    if (fault == Fault::sliver) return false;
     // Flat ones between copies are for moves to mend; and where edges grade out of what copies made, too many vertices would be needed.
     if (fault == Fault::flat || mesh_.vertex_count() > frugal_from_ || is_relieved(t)) return exemptions_.feature_at(t).has_value();
     return exemptions_.forces_shortest_edge(t);

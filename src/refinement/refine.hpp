@@ -16,6 +16,7 @@
 #include "core/run_guard.hpp"
 #include "refinement/bad_tet_queue.hpp"
 #include "refinement/sliver_rule.hpp"
+#include "refinement/thin_gaps.hpp"
 #include "sizing/size_field.hpp"
 #include "wellmesh/options.hpp"
 
@@ -61,8 +62,14 @@ public:
     /// The acute feature of the input that excuses a tetrahedron which misses a goal: one that it touches, or one whose ball holds the point
     /// that would split it. Empty if there is none.
     [[nodiscard]] std::optional<ForcedBy> forced_by(TetId t);
-    /// False: the input has no acute angles.
-    [[nodiscard]] bool knows_forced() const { return boundary_.acute().any(); }
+    /// Leaves gaps that would take more vertices than these as they are. @pre the mesh conforms, and is not refined yet.
+    void leave_gaps(double most_vertices) { gaps_ = ThinGaps(mesh_, most_vertices); }
+    [[nodiscard]] const ThinGaps& gaps() const { return gaps_; }
+    [[nodiscard]] bool is_in_gap(TetId t) const { return gaps_.sides_joined_by(mesh_, t).has_value(); }
+    /// Is a tetrahedron that misses a goal of shape to be left as it is?
+    [[nodiscard]] bool excuses(TetId t) { return is_in_gap(t) || forced_by(t).has_value(); }
+    /// False: the input has neither acute angles nor gaps that are left, so nothing is excused.
+    [[nodiscard]] bool may_excuse() const { return boundary_.acute().any() || gaps_.any(); }
     [[nodiscard]] const RefineStatistics& statistics() const { return statistics_; }
     [[nodiscard]] const SizeField& sizes() const { return sizes_; }
     /// Sets the guard of Theorem 4.2: no edge below its bound is made for quality. The reference is the shortest edge of the mesh as it is now,
@@ -109,6 +116,7 @@ private:
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
     AcuteExemptions exemptions_;
+    ThinGaps gaps_;
     std::optional<ConformingMesh> last_;  // of refine(), with fewer vertices than the user allows
     std::uint64_t left_at_last_ = 0;      // vertices that were left then, or that were there if the user allows any number
     bool keeps_last_ = false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 
 #include "conforming/conforming_mesh.hpp"
 #include "core/rng.hpp"
@@ -16,9 +17,11 @@ inline std::uint64_t key_of(TetStore::Corners c) {
 }
 
 /// The domain tetrahedron with these corners, or an invalid id.
-inline TetId find_tet(ConformingMesh& mesh, const TetStore::Corners& corners) {
+inline TetId find_tet(ConformingMesh& mesh, TetStore::Corners corners) {
     for (const VertexId v : corners)
         if (!mesh.triangulation().is_inserted(v)) return {};
+    // The star of the first is searched: the youngest's, since the oldest may hold a great part of the mesh.
+    std::sort(corners.begin(), corners.end(), std::greater<>());
     const TetFace face = mesh.triangulation().find_face(corners[0], corners[1], corners[2]);
     if (!face.valid()) return {};
     for (const TetFace side : {face, mesh.tets().across(face)})

@@ -58,7 +58,7 @@ double ShapeImprover::worst_cosine() const {
 /// Of the shape, and of what refinement left too long and thin beside acute angles without being excused by them.
 double ShapeImprover::badness_of(TetId t) {
     const double shape = judge_.shape_badness(t);
-    if (!refiner_.knows_forced() || judge_.keeps_radius_edge(t) || refiner_.forced_by(t)) return shape;
+    if (!refiner_.may_excuse() || judge_.keeps_radius_edge(t) || refiner_.excuses(t)) return shape;
     return kNoAngleCosine;
 }
 
@@ -68,12 +68,12 @@ std::uint64_t ShapeImprover::new_stamp() {
     return mending_.tick();
 }
 
-/// What an acute angle of the input forces is given its chance to move, but no splits: they would not end.
-bool ShapeImprover::is_left_alone(TetId t) const { return leaves_forced_ && refiner_.forced_by(t).has_value(); }
+/// What an acute angle of the input forces is given its chance to move, but no splits: they would not end. What is in a gap has none.
+bool ShapeImprover::is_left_alone(TetId t) const { return leaves_forced_ ? refiner_.excuses(t) : refiner_.is_in_gap(t); }
 
 void ShapeImprover::leave_forced_alone() {
     leaves_forced_ = true;
-    if (refiner_.knows_forced()) mover_.excuses = [this](TetId t) { return judge_.keeps_size(t) && is_left_alone(t); };
+    if (refiner_.may_excuse()) mover_.excuses = [this](TetId t) { return judge_.keeps_size(t) && is_left_alone(t); };
     std::erase_if(left(), [&](const Bad& b) {
         const TetId t = find_tet(mesh_, b.corners);
         return !t.valid() || is_left_alone(t);
@@ -98,7 +98,7 @@ RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) 
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     mending_.begin_pass();
     // What comes and goes, and what an acute angle forces, is for the whole mesh.
-    if (last_resort == LastResort::none && !leaves_forced_) verdict = zones_.mend(samples);
+    if (last_resort == LastResort::none && !leaves_forced_ && !refiner_.gaps().any()) verdict = zones_.mend(samples);
     if (verdict != RunGuard::Verdict::go_on) return verdict;
     mending_.last_resort = {};
     if (last_resort != LastResort::none)
@@ -144,7 +144,7 @@ RunGuard::Verdict ShapeImprover::smooth_around_bad(unsigned rings) {
                     for (const VertexId w : mesh_.tets().corners(t)) take(w);
         }
     const double floor = std::cos(kSmoothingFloor * std::acos(judge_.goal()));
-    RunGuard::Verdict verdict = leaves_forced_ ? RunGuard::Verdict::go_on : zones_.smooth(around, floor);
+    RunGuard::Verdict verdict = leaves_forced_ || refiner_.gaps().any() ? RunGuard::Verdict::go_on : zones_.smooth(around, floor);
     if (verdict != RunGuard::Verdict::go_on) return verdict;
     std::vector<VertexId> none;
     (void)mending_.smooth(around, floor, none, [&](std::size_t waiting) {
@@ -235,7 +235,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
     reached = !below();
     if (reached) return verdict;
     // Beside what an acute angle forces some tetrahedra stay for ever, which says nothing about the others.
-    const bool by_number = refiner_.knows_forced();
+    const bool by_number = refiner_.may_excuse();
     const bool no_better = by_number ? last_left <= left().size() : last_worst <= worst_cosine();
     if (last && (no_better || guard_.has_too_many(mesh_.vertex_count()))) {
         mesh_ = std::move(*last);
@@ -301,14 +301,14 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left().empty() && rung < angle_deg + kRungDeg; rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices_at_start, reached);
-    if (refiner_.knows_forced() && verdict == RunGuard::Verdict::go_on) verdict = try_afresh();
+    if (refiner_.may_excuse() && verdict == RunGuard::Verdict::go_on) verdict = try_afresh();
     if (!left().empty() && verdict == RunGuard::Verdict::go_on) verdict = rescue();
     return verdict;
 }
 
 RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
     const std::size_t vertices = mesh_.vertex_count(), slots = mesh_.vertex_slots();
-    if (refiner_.knows_forced()) guard_.set_ceiling(kCascadeCeiling * vertices + kCascadeAllowance);
+    if (refiner_.may_excuse()) guard_.set_ceiling(kCascadeCeiling * vertices + kCascadeAllowance);
     RunGuard::Verdict verdict = aim_at(std::min(angle_deg, kStraightDeg), vertices);
     // Beyond, most tetrahedra are bad: aiming at all of them at once spends its time on the many and leaves the worst. What a rung has reached is
     // kept if the next one ends lower, out of reach or out of time.

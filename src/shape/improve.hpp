@@ -48,7 +48,7 @@ public:
           mending_(mesh, judge_, mover_),
           zones_(mesh, boundary, guard, workers, judge_, mover_, mending_),
           thinning_(mesh, guard, chains_) {
-        mending_.goes_beyond_shape = refiner.knows_forced();
+        mending_.goes_beyond_shape = refiner.may_excuse();
         mending_.badness = [this](TetId t) {
             const double how = badness_of(t);
             return how > judge_.goal() && is_left_alone(t) ? 0 : how;

@@ -85,7 +85,7 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
 
 /// Takes superfluous vertices out. What excuses a tetrahedron beside an acute angle may have been one of them.
 RunGuard::Verdict ShapeImprover::thin_out(std::size_t first_new, std::size_t enough) {
-    if (!refiner_.knows_forced()) return thinning_.run(first_new, enough);
+    if (!refiner_.may_excuse()) return thinning_.run(first_new, enough);
     if (!guard_.can_double()) return RunGuard::Verdict::go_on;
     ConformingMesh last = mesh_;
     RunGuard::Verdict verdict = thinning_.run(first_new, enough);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "core/vec3_math.hpp"
@@ -84,6 +87,71 @@ TEST(ManyScales, NeedlesInAGapAreNotFlat) {
         expect_valid(result);
         EXPECT_LT(result.mesh.vertices.size(), 5000U);
     }
+}
+
+Plc square_over_floor(double gap) {
+    Plc plc = cube();
+    add(plc, {{0.2, 0.2, gap}, {0.8, 0.2, gap}, {0.8, 0.8, gap}, {0.2, 0.8, gap}}, {{0, 1, 2, 3}});
+    return plc;
+}
+
+Plc layer(double gap) {
+    Plc plc;
+    const std::array<double, 4> heights{0, 0.5, 0.5 + gap, 1};
+    for (std::uint32_t k = 0; k < 4; ++k) add(plc, {{0, 0, heights[k]}, {1, 0, heights[k]}, {1, 1, heights[k]}, {0, 1, heights[k]}}, {{0, 1, 2, 3}});
+    for (std::uint32_t k = 0; k < 3; ++k)
+        for (std::uint32_t i = 0; i < 4; ++i) {
+            const std::uint32_t j = (i + 1) % 4;
+            PlcFacet wall;
+            wall.polygons = {{4 * k + i, 4 * k + j, 4 * k + 4 + j, 4 * k + 4 + i}};
+            plc.facets.push_back(wall);
+        }
+    return plc;
+}
+
+/// What would take billions of vertices is left as it conforms, and every tetrahedron that this leaves below the goals is listed.
+TEST(NarrowGaps, AreLeftAndSaid) {
+    for (const auto& [make, least, most] : {std::tuple{&square_over_floor, 0.2, 1.0}, std::tuple{&layer, 0.5, 2.0}})
+        for (const double gap : {1e-4, 1e-5, 1e-6, 1e-7})
+            for (const std::uint64_t rotation : {0U, 5U}) {
+                SCOPED_TRACE(gap);
+                const MeshResult result = generate(transformed(make(gap), rotation, 0, 1), {});
+                expect_valid(result);
+                EXPECT_EQ(result.termination, Termination::goals_unmet);
+                EXPECT_LT(result.mesh.vertices.size(), 2000U);
+                ASSERT_TRUE(result.statistics.gaps);
+                const GapStatistics& gaps = *result.statistics.gaps;
+                EXPECT_NEAR(gaps.width, gap, 1e-3 * gap);
+                EXPECT_GT(gaps.vertices, least / (gap * gap));
+                EXPECT_LT(gaps.vertices, most / (gap * gap));
+                EXPECT_EQ(gaps.tets, result.exemptions.size());
+                EXPECT_GE(result.certificate.unexempt.min_dihedral_angle_deg, 20);
+                EXPECT_LE(result.certificate.unexempt.max_radius_edge_ratio, 2);
+                for (const Exemption& e : result.exemptions) EXPECT_EQ(e.angle_deg, 0);
+            }
+}
+
+/// Wider ones are filled as ever, with about as many vertices as are reckoned with.
+TEST(NarrowGaps, AreFilledWhereThatTakesFew) {
+    for (const double gap : {0.02, 0.01}) {
+        const MeshResult result = generate(square_over_floor(gap), {});
+        expect_valid(result);
+        EXPECT_EQ(result.termination, Termination::goals_met);
+        EXPECT_FALSE(result.statistics.gaps);
+        EXPECT_GT(static_cast<double>(result.mesh.vertices.size()), 0.5 * 0.36 / (gap * gap));
+        EXPECT_LT(static_cast<double>(result.mesh.vertices.size()), 2 * 0.36 / (gap * gap));
+    }
+}
+
+/// A limit on the vertices is not spent on what it can't fill.
+TEST(NarrowGaps, AreLeftWhereTheyTakeMoreThanIsAllowed) {
+    MeshOptions options;
+    options.limits.max_vertices = 1000;
+    const MeshResult result = generate(square_over_floor(0.01), options);
+    expect_valid(result);
+    EXPECT_TRUE(result.statistics.gaps);
+    EXPECT_LT(result.mesh.vertices.size(), 500U);
+    EXPECT_GE(result.certificate.unexempt.min_dihedral_angle_deg, 20);
 }
 
 }  // namespace

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refinement/thin_gaps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/vec3_math.hpp"
+#include "quality/tet_shape.hpp"
+#include "validation/gap_demand.hpp"
+
+namespace wellmesh {
+namespace {
+
+/// The local feature size is that of another gap, across the boundary, unless the tetrahedron is as thin as this many of them.
+constexpr double kSameGap = 4;
+
+std::uint32_t feature_of(const ConformingMesh& mesh, VertexId v) {
+    const VertexInfo& i = mesh.info(v);
+    const ValidPlc& plc = mesh.plc();
+    switch (i.carrier) {
+        case CarrierKind::input_vertex: return i.carrier_id;
+        case CarrierKind::segment: return static_cast<std::uint32_t>(plc.vertices.size()) + i.carrier_id;
+        case CarrierKind::facet: return static_cast<std::uint32_t>(plc.vertices.size() + plc.segments.size()) + i.carrier_id;
+        case CarrierKind::region: break;
+    }
+    return std::numeric_limits<std::uint32_t>::max();
+}
+
+double smallest_height(const ConformingMesh& mesh, TetId t) {
+    const auto& k = mesh.tets().corners(t);
+    double twice_area = 0;
+    for (unsigned f = 0; f < 4; ++f) {
+        const Vec3 &a = mesh.point(k[(f + 1) % 4]), &b = mesh.point(k[(f + 2) % 4]), &c = mesh.point(k[(f + 3) % 4]);
+        twice_area = std::max(twice_area, norm(cross(b - a, c - a)));
+    }
+    return std::abs(six_volumes(mesh.point(k[0]), mesh.point(k[1]), mesh.point(k[2]), mesh.point(k[3]))) / twice_area;
+}
+
+}  // namespace
+
+ThinGaps::ThinGaps(const ConformingMesh& mesh, double most_vertices) {
+    for (std::size_t i = 0; i < mesh.tets().slots(); ++i) {
+        const TetId t{i};
+        if (!mesh.tets().is_finite(t) || !mesh.in_domain(t) || !mesh.has_labels(t)) continue;
+        look_at_faces(mesh, t);
+        look_at_edges(mesh, t);
+    }
+    choose(most_vertices);
+    if (!any()) feature_size_.reset();
+    samples_ = {};
+}
+
+/// On features without a common point?
+bool ThinGaps::are_apart(const ConformingMesh& mesh, VertexId u, VertexId v) const {
+    if (mesh.info(u).carrier == CarrierKind::region || mesh.info(v).carrier == CarrierKind::region) return false;
+    return !feature_size_->incident(feature_of(mesh, u), feature_of(mesh, v));
+}
+
+/// Triangles of a facet whose tetrahedron ends on something else that is near.
+void ThinGaps::look_at_faces(const ConformingMesh& mesh, TetId t) {
+    const auto& c = mesh.tets().corners(t);
+    for (unsigned f = 0; f < 4; ++f) {
+        const FacetId facet = mesh.labels(t).facets[f];
+        if (!facet.valid() || mesh.info(c[f]).carrier == CarrierKind::region) continue;
+        const auto fc = mesh.tets().face_corners(TetFace{t, f});
+        const std::array<Vec3, 3> at{mesh.point(fc[0]), mesh.point(fc[1]), mesh.point(fc[2])};
+        const double twice_area = norm(cross(at[1] - at[0], at[2] - at[0]));
+        const double height = std::abs(six_volumes(at[0], at[1], at[2], mesh.point(c[f]))) / twice_area;
+        if (!(twice_area > kSlender * kSlender * height * height)) continue;
+        if (!feature_size_) feature_size_ = std::make_unique<LocalFeatureSize>(mesh.plc());
+        const auto near = std::find_if(fc.begin(), fc.end(), [&](VertexId v) { return are_apart(mesh, v, c[f]); });
+        if (near == fc.end()) continue;
+        const LocalFeatureSize& size = *feature_size_;
+        sample_gap(size, at, {size(at[0]), size(at[1]), size(at[2])}, [&](double area, double width) {
+            if (height < kSameGap * width) samples_.push_back({width, vertices_beside_facet(area, width), *near, c[f]});
+        });
+    }
+}
+
+/// Pieces of segments beside another segment, or beside a facet that they do not touch.
+void ThinGaps::look_at_edges(const ConformingMesh& mesh, TetId t) {
+    const auto& c = mesh.tets().corners(t);
+    for (unsigned e = 0; e < 6; ++e) {
+        if (!mesh.labels(t).segments[e].valid()) continue;
+        const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
+        const double length = distance(mesh.point(a), mesh.point(b));
+        for (const unsigned k : {unsigned{kEdgeCorners[5 - e][0]}, unsigned{kEdgeCorners[5 - e][1]}}) {
+            const VertexId far = c[k];
+            if (mesh.info(far).carrier == CarrierKind::region || mesh.info(far).carrier == CarrierKind::input_vertex) continue;
+            const double off = norm(cross(mesh.point(far) - mesh.point(a), mesh.point(b) - mesh.point(a))) / length;
+            if (!(length > kSlender * off)) continue;
+            if (!feature_size_) feature_size_ = std::make_unique<LocalFeatureSize>(mesh.plc());
+            if (!are_apart(mesh, a, far) && !are_apart(mesh, b, far)) continue;
+            const double width = (*feature_size_)(0.5 * (mesh.point(a) + mesh.point(b)));
+            if (off < kSameGap * width) samples_.push_back({width, vertices_beside_segment(length, width), a, far});
+        }
+    }
+}
+
+/// The narrowest gaps are left, as many as it takes.
+void ThinGaps::choose(double most_vertices) {
+    std::sort(samples_.begin(), samples_.end(), [](const Sample& x, const Sample& y) { return x.width > y.width; });
+    std::size_t filled = 0;
+    while (filled < samples_.size() && expected_vertices_ + samples_[filled].vertices <= most_vertices) expected_vertices_ += samples_[filled++].vertices;
+    if (filled == samples_.size()) return;
+    constexpr double kMargin = 1.01;  // the same gap, rounded
+    left_ = LeftGaps{.narrowest = samples_.back().width, .filled_from = kMargin * samples_[filled].width};
+    double most = 0;
+    for (std::size_t i = filled; i < samples_.size(); ++i) {
+        left_->vertices += samples_[i].vertices;
+        if (samples_[i].vertices <= most) continue;
+        most = samples_[i].vertices;
+        left_->width = samples_[i].width;
+        left_->sides = {samples_[i].near, samples_[i].far};
+    }
+}
+
+bool ThinGaps::is_beside_left(const ConformingMesh& mesh, VertexId v) const {
+    if (known_.size() <= v.index()) known_.resize(mesh.vertex_slots());
+    Known& known = known_[v.index()];
+    if (!known.asked || known.point != mesh.point(v)) known = {mesh.point(v), true, (*feature_size_)(mesh.point(v)) < left_->filled_from};
+    return known.beside;
+}
+
+std::optional<std::array<VertexId, 2>> ThinGaps::sides_joined_by(const ConformingMesh& mesh, TetId t) const {
+    if (!any() || !mesh.tets().is_finite(t) || smallest_height(mesh, t) > 2 * left_->filled_from) return std::nullopt;
+    const auto& c = mesh.tets().corners(t);
+    for (const auto& e : kEdgeCorners)
+        if (are_apart(mesh, c[e[0]], c[e[1]]) && is_beside_left(mesh, c[e[0]]) && is_beside_left(mesh, c[e[1]])) return std::array{c[e[0]], c[e[1]]};
+    return std::nullopt;
+}
+
+}  // namespace wellmesh

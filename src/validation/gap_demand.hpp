@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What it takes to fill a gap between two features of the input that have no point in common with tetrahedra of bounded radius-edge ratio: about as many
+// vertices as there are squares of the gap's width on its sides.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/vec3_math.hpp"
+#include "validation/local_feature_size.hpp"
+#include "validation/valid_plc.hpp"
+
+namespace wellmesh {
+
+/// Of the size of a piece of the boundary and of the gap's width there: smaller pieces are no more than ordinary meshes need.
+inline constexpr double kSlender = 8;
+
+/// Vertices that fill a gap beside a piece of a facet, which has another one across it; and along a piece of a segment. Within a quarter of what squares
+/// and ribbons take that are 0.01 to 0.001 of their size from a wall.
+inline double vertices_beside_facet(double area, double width) { return 0.5 * area / (width * width); }
+inline double vertices_beside_segment(double length, double width) { return 3 * length / width; }
+
+/// How often a triangle is halved: at least, unless the gap is wider than the piece, and at most.
+struct Halvings {
+    unsigned least = 0, most = 6;
+};
+
+/// Halves a triangle's longest side until the gap is about as wide everywhere, or wider than the piece. @param widths  local feature sizes at its corners
+/// @param emit  (area, width) of a piece
+template <class Emit>
+void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 3>& corners, const std::array<double, 3>& widths, Emit&& emit, Halvings halvings = {}) {
+    const auto [least, most] = std::minmax_element(widths.begin(), widths.end());
+    std::array<double, 3> squares{};  // of the sides opposite each corner
+    for (std::size_t i = 0; i < 3; ++i) squares[i] = squared_distance(corners[(i + 1) % 3], corners[(i + 2) % 3]);
+    const auto k = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
+    if (halvings.most == 0 || !(*most > 2 * *least || halvings.least > 0) || !(squares[k] > *least * *least)) {
+        // Of three corners one may be at the end of the gap, beside something smaller.
+        std::array<double, 3> sorted = widths;
+        std::sort(sorted.begin(), sorted.end());
+        emit(0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0])), sorted[1]);
+        return;
+    }
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    const Vec3 middle = 0.5 * (corners[i] + corners[j]);
+    const double width = size(middle);
+    const Halvings fewer{halvings.least > 0 ? halvings.least - 1 : 0, halvings.most - 1};
+    sample_gap(size, {corners[k], corners[i], middle}, {widths[k], widths[i], width}, emit, fewer);
+    sample_gap(size, {corners[k], middle, corners[j]}, {widths[k], width, widths[j]}, emit, fewer);
+}
+
+/// Vertices that filling all narrow gaps of a complex takes, gaps outside the domain included; or any number above `enough` that they take at least.
+[[nodiscard]] double vertices_for_gaps(const ValidPlc& plc, double enough);
+
+}  // namespace wellmesh
