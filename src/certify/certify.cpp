@@ -13,6 +13,7 @@
 
 #include "certify/hull_proof.hpp"
 #include "certify/mesh_faces.hpp"
+#include "certify/mesh_survey.hpp"
 #include "certify/plc_claims.hpp"
 #include "certify/shape_claims.hpp"
 #include "certify/shape_survey.hpp"
@@ -133,7 +134,9 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
     const VertexPlaces places(mesh.points(), mesh.workers());
     const Claim positive = claim_positive(mesh), distinct = claim_distinct_vertices(mesh, places), used = claim_used_vertices(mesh);
     const TetsByCorner stars(mesh);
-    FaceSurvey faces = survey_faces(mesh, stars);
+    MeshSurvey survey = survey_mesh(mesh, stars, wanted_bounds(options), options.exempt);
+    const FaceSurvey& faces = survey.faces;
+    store_statistics(survey, certificate);
     poll();
     const bool faces_in_order = !broken(positive) && !broken(faces.face_sharing) && !broken(faces.opposite_sides);
     const HullProof proof(mesh, faces.constraints, faces_in_order);
@@ -156,7 +159,7 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
     certificate.regions = measure_regions(mesh);
     append_plc_claims({mesh, stars, places, faces.constraints}, options, plc, certificate);
     poll();
-    const std::vector<Claim> about_shape = shape_claims(mesh, stars, faces.constraints, options, certificate);
+    const std::vector<Claim> about_shape = shape_claims(mesh, options, std::move(survey));
     claims.insert(claims.end(), about_shape.begin(), about_shape.end());
 }
 
@@ -203,7 +206,7 @@ void measure_shape(const TetMesh& mesh, Certificate& certificate) {
     if (!usable(mesh, scratch)) return;
     const SuspectMesh suspect(mesh);
     const TetsByCorner stars(suspect);
-    measure_shapes(suspect, stars, survey_faces(suspect, stars).constraints, certificate);
+    store_statistics(survey_mesh(suspect, stars, {}, {}), certificate);
 }
 
 }  // namespace wellmesh

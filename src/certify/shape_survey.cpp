@@ -215,19 +215,11 @@ private:
 
 }  // namespace
 
-std::vector<std::uint8_t> vertices_on(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles) {
-    std::vector<std::uint8_t> on_constraint(mesh.vertex_count(), 0);
-    for (const ConstraintTriangle& t : triangles)
-        for (const std::uint32_t v : t.v) on_constraint[v] = 1;
-    return on_constraint;
-}
-
-ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<ShapeBound>& bounds,
+ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<std::uint8_t>& on_constraint, const std::vector<ShapeBound>& bounds,
                           const std::vector<std::uint64_t>& exempt) {
     ShapeSurvey survey;
     survey.classes.assign(mesh.tet_count(), TetClass::left_out);
     survey.exceedances.resize(bounds.size());
-    const std::vector<std::uint8_t> on_constraint = vertices_on(mesh, triangles);
     const BinTable bins;
     const RangeSurvey look(mesh, on_constraint, bounds, exempt, bins, survey.classes);
     std::vector<Part> parts((mesh.tet_count() + kGrain - 1) / kGrain);

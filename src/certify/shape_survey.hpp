@@ -8,9 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "certify/edge_lengths.hpp"
-#include "certify/mesh_faces.hpp"
 #include "certify/suspect_mesh.hpp"
+#include "certify/upper_edges.hpp"
 #include "quality/tet_shape.hpp"
 #include "wellmesh/certificate.hpp"
 
@@ -37,12 +36,9 @@ struct ShapeSurvey {
 };
 
 /// Extremes are within a rounding of the extreme; which tetrahedra keep a bound is decided by shape_of().
-/// @param exempt  ascending.
-[[nodiscard]] ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<ShapeBound>& bounds,
+/// @param on_constraint  one flag a vertex: tetrahedra with such a corner are at the boundary. @param exempt  ascending.
+[[nodiscard]] ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<std::uint8_t>& on_constraint, const std::vector<ShapeBound>& bounds,
                                         const std::vector<std::uint64_t>& exempt);
-
-/// One flag a vertex: whether it is a corner of one of the triangles.
-[[nodiscard]] std::vector<std::uint8_t> vertices_on(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles);
 
 /// Numbers and volumes of all tetrahedra by region, ascending.
 [[nodiscard]] std::vector<RegionVolume> measure_regions(const SuspectMesh& mesh);
