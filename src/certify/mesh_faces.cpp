@@ -195,9 +195,9 @@ private:
     std::vector<std::uint32_t> tets_;
 };
 
-class RangeSurvey {
+class VertexRange {
 public:
-    RangeSurvey(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<TetClass>& classes)
+    VertexRange(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<TetClass>& classes)
         : mesh_(mesh), stars_(stars), classes_(classes), listed_(listed_triangles(mesh)) {
         const auto& regions = mesh.mesh().tet_regions;
         several_regions_ = std::any_of(regions.begin(), regions.end(), [&](std::int32_t r) { return r != regions.front(); });
@@ -211,7 +211,7 @@ public:
             const auto first = l;
             while (l != listed_.end() && l->v[0] == v) ++l;
             const std::span<const ListedTriangle> here(first, l);
-            if (star.collect(v, stars_.of(v), classes_)) {
+            if (star.collect(v, stars_, classes_)) {
                 report(mesh_, star, v, here, several_regions_, found);
             } else {
                 any.survey(v, stars_.of(v), here);
@@ -231,7 +231,7 @@ private:
 }  // namespace
 
 FaceSurvey survey_faces(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<TetClass>& classes) {
-    const RangeSurvey look(mesh, stars, classes);
+    const VertexRange look(mesh, stars, classes);
     std::vector<Findings> parts((mesh.vertex_count() + kVertexGrain - 1) / kVertexGrain);
     ScratchPool<SoundStar> pool;
     mesh.workers().for_ranges(mesh.vertex_count(), kVertexGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {

@@ -8,7 +8,36 @@
 
 namespace wellmesh::certifying {
 
-bool SoundStar::collect(std::uint32_t vertex, std::span<const std::uint32_t> tets, const std::vector<TetClass>& classes) {
+inline std::uint32_t& SoundStar::slot(std::uint32_t middle, std::uint32_t highest) {
+    if (few_) [[likely]]
+        return direct_[middle * kFewEnds + highest];
+    const auto hashed = static_cast<std::size_t>(((std::uint64_t{middle} << 32 | highest) * 0x9E3779B97F4A7C15U) >> shift_);
+    for (std::size_t i = hashed;; i = (i + 1) & (table_.size() - 1)) {
+        std::uint32_t& found = table_[i];
+        if (found == kNone || (faces_[found].middle == middle && faces_[found].highest == highest)) return found;
+    }
+}
+
+inline void SoundStar::add(std::uint32_t middle, std::uint32_t highest, std::uint32_t top, std::uint32_t tet, bool positive) {
+    std::uint32_t& number = slot(middle, highest);
+    const bool is_new = number == kNone;  // as often as not: no branch
+    number = is_new ? static_cast<std::uint32_t>(face_count_) : number;
+    Face& face = faces_[number];
+    sound_ &= is_new | ((face.tets[1] == kNone) & (face.first_is_positive != positive));
+    face.tets = {is_new ? tet : face.tets[0], is_new ? kNone : tet};
+    face.apexes = {is_new ? top : face.apexes[0], is_new ? kNone : top};
+    face.middle = middle;
+    face.highest = highest;
+    face.listed = kNone;
+    face.first_is_positive = is_new ? positive : face.first_is_positive;
+    face_count_ += is_new;
+    pairs_ += !is_new;
+}
+
+bool SoundStar::collect(std::uint32_t vertex, const TetsByCorner& stars, const std::vector<TetClass>& classes) {
+    constexpr std::size_t kAhead = 24;  // tetrahedra, of later vertices, too: they are all over the place
+    const std::span<const std::uint32_t> tets = stars.of(vertex), all = stars.of_all();
+    const std::array<std::uint32_t, 4>* const corners = mesh_.mesh().tets.data();
     // What came before may be asked for until now.
     if (few_)
         for (const Face& f : faces()) direct_[f.middle * kFewEnds + f.highest] = kNone;
@@ -18,10 +47,12 @@ bool SoundStar::collect(std::uint32_t vertex, std::span<const std::uint32_t> tet
     lowest_.clear();
     second_.clear();
     bool positive = true;
-    for (const std::uint32_t t : tets) {
-        positive = positive && mesh_.positive(t);
+    for (const std::uint32_t& entry : tets) {
+        const std::uint32_t t = entry;
+        if (const std::size_t left = static_cast<std::size_t>(all.data() + all.size() - &entry); left > kAhead) __builtin_prefetch(corners + (&entry)[kAhead]);
+        positive = positive && classes[t] != TetClass::left_out;
         const bool interior = classes[t] == TetClass::interior;
-        const AscendingTet tet(mesh_.mesh().tets[t]);
+        const AscendingTet tet(corners[t]);
         const auto& v = tet.v;
         if (v[0] == vertex) {
             const std::uint32_t b = edges_.visit(v[1], interior), c = edges_.visit(v[2], interior), d = edges_.visit(v[3], interior);
@@ -53,32 +84,6 @@ void SoundStar::clear_slots(std::size_t tets) {
     const std::size_t slots = std::bit_ceil(std::max<std::size_t>(16, 4 * tets));
     table_.assign(slots, kNone);
     shift_ = 64 - std::countr_zero(slots);
-}
-
-std::uint32_t& SoundStar::slot(std::uint32_t middle, std::uint32_t highest) {
-    if (few_) [[likely]]
-        return direct_[middle * kFewEnds + highest];
-    const auto hashed = static_cast<std::size_t>(((std::uint64_t{middle} << 32 | highest) * 0x9E3779B97F4A7C15U) >> shift_);
-    for (std::size_t i = hashed;; i = (i + 1) & (table_.size() - 1)) {
-        std::uint32_t& found = table_[i];
-        if (found == kNone || (faces_[found].middle == middle && faces_[found].highest == highest)) return found;
-    }
-}
-
-void SoundStar::add(std::uint32_t middle, std::uint32_t highest, std::uint32_t top, std::uint32_t tet, bool positive) {
-    std::uint32_t& number = slot(middle, highest);
-    const bool is_new = number == kNone;  // as often as not: no branch
-    number = is_new ? static_cast<std::uint32_t>(face_count_) : number;
-    Face& face = faces_[number];
-    sound_ &= is_new | ((face.tets[1] == kNone) & (face.first_is_positive != positive));
-    face.tets = {is_new ? tet : face.tets[0], is_new ? kNone : tet};
-    face.apexes = {is_new ? top : face.apexes[0], is_new ? kNone : top};
-    face.middle = middle;
-    face.highest = highest;
-    face.listed = kNone;
-    face.first_is_positive = is_new ? positive : face.first_is_positive;
-    face_count_ += is_new;
-    pairs_ += !is_new;
 }
 
 SoundStar::Face* SoundStar::find(std::uint32_t middle, std::uint32_t highest) {

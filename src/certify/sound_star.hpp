@@ -26,9 +26,9 @@ public:
 
     explicit SoundStar(const SuspectMesh& mesh) : mesh_(mesh), edges_(mesh.vertex_count()) {}
 
-    /// @param tets  TetsByCorner::of(vertex). @param classes  of all tetrahedra; none is left out that is positive.
+    /// @param classes  of all tetrahedra; left out are those that are not positive.
     /// @return whether the star is sound; if not, nothing else may be asked for.
-    bool collect(std::uint32_t vertex, std::span<const std::uint32_t> tets, const std::vector<TetClass>& classes);
+    bool collect(std::uint32_t vertex, const TetsByCorner& stars, const std::vector<TetClass>& classes);
 
     [[nodiscard]] std::span<Face> faces() { return {faces_.data(), face_count_}; }
     [[nodiscard]] std::span<const Face> faces() const { return {faces_.data(), face_count_}; }
