@@ -16,7 +16,6 @@
 #include "certify/mesh_survey.hpp"
 #include "certify/plc_claims.hpp"
 #include "certify/shape_claims.hpp"
-#include "certify/shape_survey.hpp"
 #include "certify/space_claims.hpp"
 #include "certify/suspect_mesh.hpp"
 #include "certify/tets_by_corner.hpp"
@@ -156,7 +155,7 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
     const std::vector<ConstraintSegment> segments = find_constraint_segments(mesh, faces.constraints, options.flat_angle_rad);
     claims.push_back(claim_gabriel_subsegments(mesh, search, segments, by_hull && proof.segments_are_clear(stars, segments)));
     poll();
-    certificate.regions = measure_regions(mesh);
+    certificate.regions = survey.shapes.regions;
     append_plc_claims({mesh, stars, places, faces.constraints}, options, plc, certificate);
     poll();
     const std::vector<Claim> about_shape = shape_claims(mesh, options, std::move(survey));

@@ -16,6 +16,9 @@ using Tet = std::array<std::uint32_t, 4>;
 /// whose corners are all on its rim would take for ever.
 constexpr std::size_t kTiesPerFace = 4;
 
+/// Hull faces whose spheres are looked at together.
+constexpr std::size_t kFaces = 16;
+
 std::uint32_t apex(const Tet& tet, const Triangle& face) {
     return *std::find_if(tet.begin(), tet.end(), [&](std::uint32_t v) { return v != face[0] && v != face[1] && v != face[2]; });
 }
@@ -123,19 +126,31 @@ std::optional<std::vector<HullProof::Tie>> HullProof::look_at_spheres() {
     std::vector<Part> parts((faces_.size() + kSmallGrain - 1) / kSmallGrain);
     mesh_.workers().for_ranges(faces_.size(), kSmallGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         Part& part = parts[piece];
-        for (std::size_t i = begin; i < end && part.spheres_are_empty; ++i) {
+        const auto look = [&](std::size_t i, auto&& any_in) {
             const ConstraintTriangle& t = triangles_[faces_[i]];
-            part.apexes_are_outside = part.apexes_are_outside && apexes_are_outside(t);
             const Triangle& corners = corners_[i];
-            const Ball ball = search_->equatorial_ball(mesh_.weighted(t.v[0]), mesh_.weighted(t.v[1]), mesh_.weighted(t.v[2]));
-            const bool intruded = search_->any_in(ball, [&](std::uint32_t q) {
+            part.apexes_are_outside = part.apexes_are_outside && apexes_are_outside(t);
+            part.spheres_are_empty = part.spheres_are_empty && !any_in([&](std::uint32_t q) {
                 if (q == corners[0] || q == corners[1] || q == corners[2]) return false;
                 const Sign s = side(t.v, vertices_[q]);
                 if (s == Sign::zero && !part.many_ties) part.ties.push_back({static_cast<std::uint32_t>(i), q});
                 part.many_ties = part.ties.size() > kTiesPerFace * kSmallGrain;
                 return s == Sign::positive;
             });
-            if (intruded) part.spheres_are_empty = false;
+        };
+        // Faces next to each other in the list are mostly neighbours.
+        std::vector<Ball> balls;
+        BallSearch::Neighbourhood near;
+        for (std::size_t first = begin; first < end && part.spheres_are_empty; first += kFaces) {
+            const std::size_t last = std::min(end, first + kFaces);
+            balls.clear();
+            for (std::size_t i = first; i < last; ++i) {
+                const Triangle& v = triangles_[faces_[i]].v;
+                balls.push_back(search_->equatorial_ball(mesh_.weighted(v[0]), mesh_.weighted(v[1]), mesh_.weighted(v[2])));
+            }
+            const bool together = search_->list_near(balls, near);
+            for (std::size_t i = first; i < last; ++i)
+                look(i, [&](auto&& visit) { return together ? near.any_in(balls[i - first], visit) : search_->any_in(balls[i - first], visit); });
         }
     });
     const bool empty = std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.spheres_are_empty; });

@@ -40,7 +40,10 @@ std::vector<ListedTriangle> listed_triangles(const SuspectMesh& mesh) {
     std::vector<ListedTriangle> listed;
     listed.reserve(subfaces.size());
     for (std::size_t i = 0; i < subfaces.size(); ++i) listed.push_back({sorted(subfaces[i]), static_cast<std::uint32_t>(i)});
-    std::sort(listed.begin(), listed.end(), [](const ListedTriangle& a, const ListedTriangle& b) { return a.v != b.v ? a.v < b.v : a.number < b.number; });
+    std::sort(listed.begin(), listed.end(), [](const ListedTriangle& a, const ListedTriangle& b) {
+        const auto order = a.v <=> b.v;
+        return order < 0 || (order == 0 && a.number < b.number);
+    });
     return listed;
 }
 

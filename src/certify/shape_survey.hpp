@@ -28,9 +28,10 @@ struct ShapeBound {
     [[nodiscard]] bool kept(const TetShape& shape) const { return upper ? shape.*value <= *limit : shape.*value >= *limit; }
 };
 
-/// Positive tetrahedra only; nothing about edges.
+/// Positive tetrahedra only, but for the regions; nothing about edges.
 struct ShapeSurvey {
     ShapeStatistics all, interior, boundary, unexempt, unexempt_interior, unexempt_boundary;
+    std::vector<RegionVolume> regions;      ///< numbers and volumes of all tetrahedra, ascending
     std::vector<TetClass> classes;         ///< of all tetrahedra
     std::vector<ClaimBuilder> exceedances;  ///< of each bound, by tetrahedra that are not exempt
 };
@@ -39,8 +40,5 @@ struct ShapeSurvey {
 /// @param on_constraint  one flag a vertex: tetrahedra with such a corner are at the boundary. @param exempt  ascending.
 [[nodiscard]] ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<std::uint8_t>& on_constraint, const std::vector<ShapeBound>& bounds,
                                         const std::vector<std::uint64_t>& exempt);
-
-/// Numbers and volumes of all tetrahedra by region, ascending.
-[[nodiscard]] std::vector<RegionVolume> measure_regions(const SuspectMesh& mesh);
 
 }  // namespace wellmesh::certifying
