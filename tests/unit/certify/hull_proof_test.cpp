@@ -217,6 +217,21 @@ TEST(HullProof, AgreesWithBruteForce) {
     EXPECT_GT(partly, 5);
 }
 
+// Edge beside edge of two cells: corners are inside the diametral spheres of edges of the other one, and in no other sphere.
+TEST(HullProof, EdgesAcrossAGapCount) {
+    for (std::uint32_t which = 0; which < 48; ++which)
+        for (const double gap : {0.25, 0.5}) {
+            TetMesh mesh = cells(1, [](const Vec3&) { return true; });
+            append(mesh, TetMesh(mesh), [&](const Vec3& p) { return p + Vec3{1 + gap, 1 + gap, 0.5}; });
+            mesh = turned(mesh, which);
+            const Findings found = look(mesh);
+            EXPECT_TRUE(found.embedded && found.hull_is_clear);
+            EXPECT_EQ(found.segments_are_clear, gap == 0.5);
+            EXPECT_EQ(certify(mesh).find("delaunay")->state, Claim::State::proven);
+            EXPECT_EQ(certify(mesh).find("gabriel_subsegments")->violations, gap == 0.5 ? 0U : 2U);
+        }
+}
+
 // Nothing but the vertices inside decides here: apexes of the hull's tetrahedra, or neighbours of its edges, or neither.
 TEST(HullProof, ApexesAndNeighboursCount) {
     int only_faces = 0, neither = 0;
