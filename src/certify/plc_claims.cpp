@@ -42,23 +42,21 @@ public:
     PlcComparison(const SurveyedMesh& surveyed, const CertifyOptions& options, const PlcSurface& surface)
         : mesh_(surveyed.mesh), stars_(surveyed.stars), places_(surveyed.places), constraints_(surveyed.triangles), surface_(surface),
           tolerance_(options.tolerance * surface.diagonal), relative_tolerance_(options.tolerance) {
-        std::vector<Corners> all, hull, separating;
-        all.reserve(constraints_.size());
-        for (std::uint32_t i = 0; i < constraints_.size(); ++i) {
-            const ConstraintTriangle& t = constraints_[i];
-            all.push_back({mesh_.point(t.v[0]), mesh_.point(t.v[1]), mesh_.point(t.v[2])});
-            if (t.on_hull) hull.push_back(all.back());
-            if (!t.is_face || (!t.on_hull && mesh_.region(t.tets[0]) == mesh_.region(t.tets[1]))) continue;
-            separating.push_back(all.back());
-            separating_.push_back(i);
-        }
-        // Mostly they are the same: every constraint triangle is on the hull.
-        covered_ = std::make_shared<const TriangleTree>(std::move(all));
-        const auto tree_of = [&](std::vector<Corners>&& triangles) {
-            return triangles.size() == constraints_.size() ? covered_ : std::make_shared<const TriangleTree>(std::move(triangles));
+        const auto separates = [&](const ConstraintTriangle& t) { return t.is_face && (t.on_hull || mesh_.region(t.tets[0]) != mesh_.region(t.tets[1])); };
+        for (std::uint32_t i = 0; i < constraints_.size(); ++i)
+            if (separates(constraints_[i])) separating_.push_back(i);
+        const auto tree_of = [&](auto&& wanted) {
+            std::vector<Corners> triangles;
+            triangles.reserve(constraints_.size());
+            for (const ConstraintTriangle& t : constraints_)
+                if (wanted(t)) triangles.push_back({mesh_.point(t.v[0]), mesh_.point(t.v[1]), mesh_.point(t.v[2])});
+            return std::make_shared<const TriangleTree>(std::move(triangles), mesh_.workers());
         };
-        separators_ = tree_of(std::move(separating));
-        hull_ = tree_of(std::move(hull));
+        // Mostly they are the same: every constraint triangle is on the hull.
+        const auto on_hull = [](const ConstraintTriangle& t) { return t.on_hull; };
+        covered_ = tree_of([](const ConstraintTriangle&) { return true; });
+        separators_ = separating_.size() == constraints_.size() ? covered_ : tree_of(separates);
+        hull_ = std::all_of(constraints_.begin(), constraints_.end(), on_hull) ? covered_ : tree_of(on_hull);
         facet_wanted_.assign(surface.facets.empty() ? 0 : surface.facets.back() + std::size_t{1}, false);
         triangles_.resize(surface.facets.size());
         mesh_.workers().for_ranges(triangles_.size(), kSmallGrain, [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -284,8 +284,7 @@ Claim claim_delaunay(const SuspectMesh& mesh, VertexSearch& vertices, bool prove
     const bool weighted = mesh.is_weighted();
     ClaimBuilder claim = weighted ? ClaimBuilder("weighted_delaunay", "No vertex is in conflict with the sphere orthogonal to a tetrahedron.")
                                   : ClaimBuilder("delaunay", "No vertex lies strictly inside the circumsphere of a tetrahedron.");
-    std::uint64_t positive = 0;
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) positive += mesh.positive(t);
+    const std::uint64_t positive = mesh.positive_count();
     claim.checked(positive);
     if (positive < mesh.tet_count()) claim.note(fmt::format("{} inverted or flat tetrahedra have no circumsphere to look at", mesh.tet_count() - positive));
     if (proven_by_faces) return claim.decided();
