@@ -12,8 +12,8 @@ namespace {
 
 using Tet = std::array<std::uint32_t, 4>;
 
-/// Vertices on the equatorial sphere of a hull face that are followed up, on average over a range of faces; a square has one, and a disc full of triangles
-/// whose corners are all on its rim would take for ever.
+/// Vertices on the equatorial sphere of a hull face that are followed up, on average over a range of faces; a square has one, and a disc full of
+/// triangles whose corners are all on its rim would take for ever.
 constexpr std::size_t kTiesPerFace = 4;
 
 /// Hull faces whose spheres are looked at together.
@@ -31,8 +31,8 @@ std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) {
 }  // namespace
 
 bool meet_properly(const SuspectMesh& mesh, const Tet& a, const Tet& b) {
-    // Corners by bits: those that may still span a common point. A plane that has those of one triangle on one side and those of the other on the other side, or on
-    // itself, leaves those on itself.
+    // Corners by bits: those that may still span a common point. A plane that has those of one triangle on one side and those of the other on the
+    // other side, or on itself, leaves those on itself.
     unsigned left_a = 7, left_b = 7, shared_a = 0, shared_b = 0;
     for (unsigned i = 0; i < 3; ++i)
         for (unsigned k = 0; k < 3; ++k)
@@ -44,7 +44,8 @@ bool meet_properly(const SuspectMesh& mesh, const Tet& a, const Tet& b) {
             for (unsigned i = 0; i < 3; ++i) {
                 if ((left >> i & 1) == 0) continue;
                 const std::uint32_t v = corners[i];
-                const Sign s = v == p || v == q || v == r ? Sign::zero : mesh.predicates().orient3d(mesh.point(p), mesh.point(q), mesh.point(r), mesh.point(v));
+                const bool on_plane = v == p || v == q || v == r;
+                const Sign s = on_plane ? Sign::zero : mesh.predicates().orient3d(mesh.point(p), mesh.point(q), mesh.point(r), mesh.point(v));
                 sides[s == Sign::negative ? 0 : s == Sign::zero ? 1 : 2] |= 1U << i;
             }
         };
@@ -72,7 +73,8 @@ bool meet_properly(const SuspectMesh& mesh, const Tet& a, const Tet& b) {
     return false;
 }
 
-HullProof::HullProof(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order) : mesh_(mesh), triangles_(triangles) {
+HullProof::HullProof(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order)
+    : mesh_(mesh), triangles_(triangles) {
     if (!faces_in_order) return;
     list_vertices();
     search_.emplace(points_, weights_, mesh_.workers());
@@ -121,7 +123,9 @@ std::optional<std::vector<HullProof::Tie>> HullProof::look_at_spheres() {
                         : side_of_equatorial_sphere(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(q));
     };
     const auto apexes_are_outside = [&](const ConstraintTriangle& t) {
-        return std::all_of(t.tets.begin(), t.tets.end(), [&](std::uint32_t tet) { return tet == kNone || side(t.v, apex(mesh_.mesh().tets[tet], t.v)) != Sign::positive; });
+        return std::all_of(t.tets.begin(), t.tets.end(), [&](std::uint32_t tet) {
+            return tet == kNone || side(t.v, apex(mesh_.mesh().tets[tet], t.v)) != Sign::positive;
+        });
     };
     std::vector<Part> parts((faces_.size() + kSmallGrain - 1) / kSmallGrain);
     mesh_.workers().for_ranges(faces_.size(), kSmallGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
@@ -229,8 +233,10 @@ bool HullProof::segments_are_clear(const TetsByCorner& stars, const std::vector<
                 is_edge = true;
                 intruded = intruded || std::any_of(tet.begin(), tet.end(), inside);
             }
-            if (is_edge && !intruded && on_hull(a) && on_hull(b))
-                intruded = search_->any_in(search_->diametral_ball(mesh_.weighted(a), mesh_.weighted(b)), [&](std::uint32_t q) { return inside(vertices_[q]); });
+            if (is_edge && !intruded && on_hull(a) && on_hull(b)) {
+                const Ball ball = search_->diametral_ball(mesh_.weighted(a), mesh_.weighted(b));
+                intruded = search_->any_in(ball, [&](std::uint32_t q) { return inside(vertices_[q]); });
+            }
             if (!is_edge || intruded) clear = false;
         }
     });

@@ -1,34 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows from the hull: that no tetrahedra overlap, that all is Delaunay, and that constraints are Gabriel, with no search but of hull vertices.
+// What follows from the hull: that no tetrahedra overlap, that all is Delaunay, and that constraints are Gabriel, with no search but of hull
+// vertices.
 //
-// Let every tetrahedron be positive, no face have more than two, two at a face lie on opposite sides of it, and every vertex belong to a tetrahedron.
-// A hull face has one tetrahedron; hull vertices are corners of hull faces. Spheres are named for spheres without weights; with weights read
-// "in conflict with the smallest orthogonal sphere" for "strictly inside the equatorial sphere", and so on: what is used of them is that the difference
-// of two powers is linear. Let P_F be the power with respect to F's sphere: 0 at its corners, negative at what is strictly inside.
+// Let every tetrahedron be positive, no face have more than two, two at a face lie on opposite sides of it, and every vertex belong to a
+// tetrahedron. A hull face has one tetrahedron; hull vertices are corners of hull faces. Spheres are named for spheres without weights; with
+// weights read "in conflict with the smallest orthogonal sphere" for "strictly inside the equatorial sphere", and so on: what is used of them is
+// that the difference of two powers is linear. Let P_F be the power with respect to F's sphere: 0 at its corners, negative at what is strictly
+// inside.
 //
-// (a) Let no hull vertex be strictly inside the equatorial sphere of a hull face. If two hull faces F and G have a common point x, it is spanned by
-//     corners of F and by corners of G. P_F - P_G is linear, at most 0 at F's corners and at least 0 at G's: it is 0 at x, and so at all corners that
-//     span it. So those of G that F doesn't have lie on F's sphere. Hence no two hull faces have more in common than the triangle, edge or corner that
-//     they share, if that holds for each F and the hull faces at the vertices on its sphere: mostly there is none.
-// (b) Then the hull is embedded. The number w(x) of tetrahedra that contain a generic point x changes by one at a hull face and nowhere else. Where two
-//     hull faces only are at an edge, the same side of space is outside of both (the hull bounds a sum of tetrahedra, so they are oriented alike). So w
-//     has one value k outside of all the faces of a component (connected through such edges), and k + 1 inside of them. If there is one component,
-//     its unbounded side has w = 0, which is k, as k + 1 = 0 is impossible: w is 0 or 1, and no two tetrahedra overlap. If there are several, it is enough
-//     that for one face of each no other tetrahedron is on its inner side, beside its own.
-// (c) Let moreover every interior face be locally Delaunay, and no apex of the tetrahedron at a hull face be strictly inside its equatorial sphere. Then
-//     all is Delaunay. The walk of space_claims.hpp (2) goes on where it left the mesh: it leaves tau through F towards p, and P_F(p) < 0. If it enters
-//     the mesh again, at a point x of the hull face G, having left at y: P_F - P_G is at most 0 on F, at least 0 on G, so it is at least 0 beyond x as seen
-//     from y: P_G(p) <= P_F(p) < 0. On the inner side of G the power with respect to the sphere of the tetrahedron there is at most P_G, as its apex is not
-//     inside: p is strictly inside that sphere, and the walk goes on. It ends at p, within the mesh, which space_claims.hpp excludes, or from outside:
-//     then tetrahedra do not surround p, so that it is a hull vertex, which is not strictly inside F's sphere.
-// (d) Then no vertex p at all is strictly inside the equatorial sphere of a hull face F: on F's inner side, or on its plane, it would be inside the sphere of the
-//     tetrahedron there; on the other side walk to it from a point of F, as above. Nor is one inside that of an interior face F whose two apexes are
-//     not: it would be inside the sphere of the tetrahedron on its side.
-// (e) Nor is one inside the diametral sphere of an edge e if none is of those that make a tetrahedron with e, nor, where e is on the hull, a hull vertex. Let P be
-//     the power with respect to that sphere, P(p) < 0, m a point of e. If some tetrahedron t at e is in the direction of p as seen from m: P minus the power with respect
-//     to t's sphere is linear, 0 on the line of e and at least 0 at the other corners of t, so it is at least 0 at p, which is inside t's sphere: excluded. If
-//     none is, e is on the hull, and the way from m to p starts outside. It ends there, at a hull vertex, or enters through a hull face G at x. P - P_G is at most 0 at m
-//     and at least 0 at x, so P_G(p) <= P(p) < 0, which (d) excludes.
+// (a) Let no hull vertex be strictly inside the equatorial sphere of a hull face. If two hull faces F and G have a common point x, it is spanned
+//     by corners of F and by corners of G. P_F - P_G is linear, at most 0 at F's corners and at least 0 at G's: it is 0 at x, and so at all
+//     corners that span it. So those of G that F doesn't have lie on F's sphere. Hence no two hull faces have more in common than the triangle,
+//     edge or corner that they share, if that holds for each F and the hull faces at the vertices on its sphere: mostly there is none.
+// (b) Then the hull is embedded. The number w(x) of tetrahedra that contain a generic point x changes by one at a hull face and nowhere else.
+//     Where two hull faces only are at an edge, the same side of space is outside of both (the hull bounds a sum of tetrahedra, so they are
+//     oriented alike). So w has one value k outside of all the faces of a component (connected through such edges), and k + 1 inside of them. If
+//     there is one component, its unbounded side has w = 0, which is k, as k + 1 = 0 is impossible: w is 0 or 1, and no two tetrahedra overlap.
+//     If there are several, it is enough that for one face of each no other tetrahedron is on its inner side, beside its own.
+// (c) Let moreover every interior face be locally Delaunay, and no apex of the tetrahedron at a hull face be strictly inside its equatorial
+//     sphere. Then all is Delaunay. The walk of space_claims.hpp (2) goes on where it left the mesh: it leaves tau through F towards p, and
+//     P_F(p) < 0. If it enters the mesh again, at a point x of the hull face G, having left at y: P_F - P_G is at most 0 on F, at least 0 on G,
+//     so it is at least 0 beyond x as seen from y: P_G(p) <= P_F(p) < 0. On the inner side of G the power with respect to the sphere of the
+//     tetrahedron there is at most P_G, as its apex is not inside: p is strictly inside that sphere, and the walk goes on. It ends at p, within
+//     the mesh, which space_claims.hpp excludes, or from outside: then tetrahedra do not surround p, so that it is a hull vertex, which is not
+//     strictly inside F's sphere.
+// (d) Then no vertex p at all is strictly inside the equatorial sphere of a hull face F: on F's inner side, or on its plane, it would be inside
+//     the sphere of the tetrahedron there; on the other side walk to it from a point of F, as above. Nor is one inside that of an interior face F
+//     whose two apexes are not: it would be inside the sphere of the tetrahedron on its side.
+// (e) Nor is one inside the diametral sphere of an edge e if none is of those that make a tetrahedron with e, nor, where e is on the hull, a hull
+//     vertex. Let P be the power with respect to that sphere, P(p) < 0, m a point of e. If some tetrahedron t at e is in the direction of p as
+//     seen from m: P minus the power with respect to t's sphere is linear, 0 on the line of e and at least 0 at the other corners of t, so it is
+//     at least 0 at p, which is inside t's sphere: excluded. If none is, e is on the hull, and the way from m to p starts outside. It ends there,
+//     at a hull vertex, or enters through a hull face G at x. P - P_G is at most 0 at m and at least 0 at x, so P_G(p) <= P(p) < 0, which (d)
+//     excludes.
 #pragma once
 
 #include <cstdint>
@@ -62,8 +66,9 @@ public:
     [[nodiscard]] bool segments_are_clear(const TetsByCorner& stars, const std::vector<ConstraintSegment>& segments) const;
 
 private:
+    /// A hull vertex on the equatorial sphere of a hull face, by their places in vertices_ and faces_.
     struct Tie {
-        std::uint32_t face, vertex;  ///< the hull vertex, by its place in vertices_, is on the equatorial sphere of the hull face, by its place in faces_
+        std::uint32_t face, vertex;
     };
     void list_vertices();
     /// @return the ties, if there are few.
@@ -85,8 +90,8 @@ private:
     bool embedded_ = false, hull_is_clear_ = false, interfaces_are_clear_ = false;
 };
 
-/// Exact: two triangles, each with another corner of its tetrahedron at the end, have only the hull of the shared corners in common. False: they have more, or
-/// it is not clear.
+/// Exact: two triangles, each with another corner of its tetrahedron at the end, have only the hull of the shared corners in common. False: they
+/// have more, or it is not clear.
 [[nodiscard]] bool meet_properly(const SuspectMesh& mesh, const std::array<std::uint32_t, 4>& a, const std::array<std::uint32_t, 4>& b);
 
 }  // namespace wellmesh::certifying

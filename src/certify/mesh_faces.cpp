@@ -61,7 +61,8 @@ void report_not_a_face(const SuspectMesh& mesh, const ListedTriangle& l, Finding
                                 [&] { return fmt::format("vertices {} {} {} span no face of a tetrahedron", l.v[0] + 1, l.v[1] + 1, l.v[2] + 1); });
 }
 
-void report(const SuspectMesh& mesh, SoundStar& star, std::uint32_t vertex, std::span<const ListedTriangle> listed, bool several_regions, Findings& found) {
+void report(const SuspectMesh& mesh, SoundStar& star, std::uint32_t vertex, std::span<const ListedTriangle> listed, bool several_regions,
+            Findings& found) {
     const std::span<const SoundStar::Face> faces = star.faces();
     found.faces += faces.size();
     found.interior_faces += star.pairs();

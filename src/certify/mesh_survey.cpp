@@ -18,7 +18,8 @@ std::vector<std::uint8_t> corners_of(const SuspectMesh& mesh, const Triangles& t
 }  // namespace
 
 // What is at the boundary is known when the faces are, but mostly the mesh lists all that is: then one visit of every star does for faces and edges.
-MeshSurvey survey_mesh(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ShapeBound>& bounds, const std::vector<std::uint64_t>& exempt) {
+MeshSurvey survey_mesh(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ShapeBound>& bounds,
+                       const std::vector<std::uint64_t>& exempt) {
     MeshSurvey survey;
     std::vector<std::uint8_t> expected = corners_of(mesh, mesh.mesh().subfaces, [](const Triangle& t) { return t; });
     survey.shapes = survey_shapes(mesh, expected, bounds, exempt);

@@ -21,6 +21,7 @@ struct MeshSurvey {
 };
 
 /// @param exempt  ascending.
-[[nodiscard]] MeshSurvey survey_mesh(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ShapeBound>& bounds, const std::vector<std::uint64_t>& exempt);
+[[nodiscard]] MeshSurvey survey_mesh(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ShapeBound>& bounds,
+                                     const std::vector<std::uint64_t>& exempt);
 
 }  // namespace wellmesh::certifying

@@ -42,7 +42,9 @@ public:
     PlcComparison(const SurveyedMesh& surveyed, const CertifyOptions& options, const PlcSurface& surface)
         : mesh_(surveyed.mesh), stars_(surveyed.stars), places_(surveyed.places), constraints_(surveyed.triangles), surface_(surface),
           tolerance_(options.tolerance * surface.diagonal), relative_tolerance_(options.tolerance) {
-        const auto separates = [&](const ConstraintTriangle& t) { return t.is_face && (t.on_hull || mesh_.region(t.tets[0]) != mesh_.region(t.tets[1])); };
+        const auto separates = [&](const ConstraintTriangle& t) {
+            return t.is_face && (t.on_hull || mesh_.region(t.tets[0]) != mesh_.region(t.tets[1]));
+        };
         for (std::uint32_t i = 0; i < constraints_.size(); ++i)
             if (separates(constraints_[i])) separating_.push_back(i);
         const auto tree_of = [&](auto&& wanted) {
@@ -80,7 +82,7 @@ public:
         const std::vector<std::uint8_t> new_corners = find_new_corners();
         const double rounding = 4 * std::numeric_limits<double>::epsilon() * mesh_.largest_coordinate();
         // The distance to any one triangle is enough to know of where it can't change what is reported.
-        const auto distance_to = [&](const Vec3& p, std::uint32_t triangle) { return std::sqrt(squared_distance(p, surface_.triangles.triangles()[triangle])); };
+        const auto distance_to = [&](const Vec3& p, std::uint32_t i) { return std::sqrt(squared_distance(p, surface_.triangles.triangles()[i])); };
         look_in_ranges(mesh_.workers(), constraints_.size(), kSmallGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
             Worst& worst = parts[begin / kSmallGrain];
             std::uint32_t hint = 0;
@@ -95,7 +97,8 @@ public:
                     const bool is_new = k < 3 && (new_corners[i] >> k & 1) != 0;
                     const double harmless = std::min({tolerance_, worst.of_all, is_new ? std::min(rounding, worst.of_vertex) : tolerance_});
                     double known = distance_to(probes[k], hint);
-                    if (const double other = known > harmless && named != hint ? distance_to(probes[k], named) : known; other < known) known = other, hint = named;
+                    const double other = known > harmless && named != hint ? distance_to(probes[k], named) : known;
+                    if (other < known) known = other, hint = named;
                     if (known <= harmless) continue;
                     const auto nearest = surface_.triangles.nearest(probes[k], hint);
                     hint = nearest.triangle;

@@ -38,7 +38,7 @@ struct ShapeSurvey {
 
 /// Extremes are within a rounding of the extreme; which tetrahedra keep a bound is decided by shape_of().
 /// @param on_constraint  one flag a vertex: tetrahedra with such a corner are at the boundary. @param exempt  ascending.
-[[nodiscard]] ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<std::uint8_t>& on_constraint, const std::vector<ShapeBound>& bounds,
-                                        const std::vector<std::uint64_t>& exempt);
+[[nodiscard]] ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<std::uint8_t>& on_constraint,
+                                        const std::vector<ShapeBound>& bounds, const std::vector<std::uint64_t>& exempt);
 
 }  // namespace wellmesh::certifying

@@ -49,7 +49,8 @@ bool SoundStar::collect(std::uint32_t vertex, const TetsByCorner& stars, const s
     bool positive = true;
     for (const std::uint32_t& entry : tets) {
         const std::uint32_t t = entry;
-        if (const std::size_t left = static_cast<std::size_t>(all.data() + all.size() - &entry); left > kAhead) __builtin_prefetch(corners + (&entry)[kAhead]);
+        const auto left = static_cast<std::size_t>(all.data() + all.size() - &entry);
+        if (left > kAhead) __builtin_prefetch(corners + (&entry)[kAhead]);
         positive = positive && classes[t] != TetClass::left_out;
         const bool interior = classes[t] == TetClass::interior;
         const AscendingTet tet(corners[t]);
@@ -113,7 +114,8 @@ std::uint64_t SoundStar::count_not_delaunay() const {
     };
     for (const Face& f : faces()) {
         if (f.tets[1] == kNone) continue;
-        rows[n] = {&mesh_.point(edges()[f.middle].vertex), &mesh_.point(edges()[f.highest].vertex), &mesh_.point(f.apexes[0]), &mesh_.point(f.apexes[1])};
+        const std::uint32_t middle = edges()[f.middle].vertex, highest = edges()[f.highest].vertex;
+        rows[n] = {&mesh_.point(middle), &mesh_.point(highest), &mesh_.point(f.apexes[0]), &mesh_.point(f.apexes[1])};
         inside[n++] = f.first_is_positive ? Sign::positive : Sign::negative;
         if (n == 4) evaluate();
     }

@@ -57,7 +57,8 @@ private:
     std::vector<Uppers> lowest_;  // of tetrahedra with the vertex as the lowest corner
     std::vector<Uppers> second_;  // as the second one; the first place is unused, and holds the lowest corner itself
     std::vector<Face> faces_;
-    std::vector<std::uint32_t> direct_ = std::vector<std::uint32_t>(std::size_t{kFewEnds} * kFewEnds, kNone);  // numbers in faces_; all kNone between two stars
+    /// Numbers in faces_ by the places of middle and highest; kNone but for the faces of this star.
+    std::vector<std::uint32_t> direct_ = std::vector<std::uint32_t>(std::size_t{kFewEnds} * kFewEnds, kNone);
     std::vector<std::uint32_t> table_;  // the same by open addressing
     std::size_t face_count_ = 0, pairs_ = 0;
     int shift_ = 0;

@@ -239,11 +239,14 @@ bool overlap(const SuspectMesh& mesh, std::size_t tet, std::size_t other) {
     return true;
 }
 
-Claim claim_disjoint(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintTriangle>& triangles, const HullProof& proof, bool faces_in_order) {
+Claim claim_disjoint(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintTriangle>& triangles, const HullProof& proof,
+                     bool faces_in_order) {
     ClaimBuilder claim("disjoint_tets", "No two tetrahedra overlap.");
     claim.checked(mesh.tet_count());
     if (faces_in_order) {
-        if (proof.embedded() && (proof.components().size() == 1 || look_inside_hull(mesh, triangles, proof.components()) == InsideHull::clear)) return claim.decided();
+        const std::vector<std::uint32_t>& components = proof.components();
+        if (proof.embedded() && (components.size() == 1 || look_inside_hull(mesh, triangles, components) == InsideHull::clear))
+            return claim.decided();
         std::vector<std::uint32_t> hull;
         for (std::uint32_t i = 0; i < triangles.size(); ++i)
             if (triangles[i].on_hull) hull.push_back(i);
@@ -319,7 +322,8 @@ struct Touched {
 
 }  // namespace
 
-GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, VertexSearch& vertices, const std::vector<ConstraintTriangle>& triangles, bool proven_by_hull) {
+GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, VertexSearch& vertices, const std::vector<ConstraintTriangle>& triangles,
+                                       bool proven_by_hull) {
     const bool weighted = mesh.is_weighted();
     ClaimBuilder claim(weighted ? "weighted_gabriel_subfaces" : "gabriel_subfaces",
                        fmt::format("No vertex {} sphere {} a constraint triangle (on the hull, between regions, or listed).",
@@ -363,7 +367,8 @@ GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, VertexSearch& ve
     return {claim.decided(), touched_hull_faces};
 }
 
-Claim claim_gabriel_subsegments(const SuspectMesh& mesh, VertexSearch& vertices, const std::vector<ConstraintSegment>& segments, bool proven_by_hull) {
+Claim claim_gabriel_subsegments(const SuspectMesh& mesh, VertexSearch& vertices, const std::vector<ConstraintSegment>& segments,
+                                bool proven_by_hull) {
     const bool weighted = mesh.is_weighted();
     ClaimBuilder claim(weighted ? "weighted_gabriel_subsegments" : "gabriel_subsegments",
                        fmt::format("No vertex {} sphere {} a constraint edge (where constraint triangles bend or meet, or listed).",

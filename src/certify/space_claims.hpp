@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Claims about how tetrahedra and vertices lie in space: no overlaps, Delaunay, Gabriel.
 //
+// Mostly hull_proof.hpp proves all of them. Where it does not, (1) and (2) ask for less, and what they don't prove is searched for.
+//
 // Why looking at faces can be enough. Let every tetrahedron be positive, no face have more than two, and two at a face lie on opposite
 // sides of it.
 //
@@ -61,7 +63,8 @@ private:
 
 /// No two tetrahedra have a common interior point; exact, see (1) and hull_proof.hpp.
 /// @param faces_in_order  the premises of (1) hold: otherwise a clean search proves nothing.
-[[nodiscard]] Claim claim_disjoint(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintTriangle>& triangles, const HullProof& proof, bool faces_in_order);
+[[nodiscard]] Claim claim_disjoint(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintTriangle>& triangles,
+                                   const HullProof& proof, bool faces_in_order);
 
 /// No vertex strictly inside the circumsphere of a positive tetrahedron (or in conflict with its orthogonal sphere, with weights); exact
 /// and global. Counts tetrahedra with at least one.
@@ -77,8 +80,10 @@ struct GabrielFindings {
     std::uint64_t touched_hull_faces = 0;  ///< with a vertex strictly inside, however little
 };
 /// @param proven_by_hull  the premises of hull_proof.hpp hold, so that there is none.
-[[nodiscard]] GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintTriangle>& triangles, bool proven_by_hull);
-[[nodiscard]] Claim claim_gabriel_subsegments(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintSegment>& segments, bool proven_by_hull);
+[[nodiscard]] GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintTriangle>& triangles,
+                                                     bool proven_by_hull);
+[[nodiscard]] Claim claim_gabriel_subsegments(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintSegment>& segments,
+                                              bool proven_by_hull);
 
 /// Exact: do the tetrahedra, neither of them flat, have a common interior point?
 [[nodiscard]] bool overlap(const SuspectMesh& mesh, std::size_t tet, std::size_t other);

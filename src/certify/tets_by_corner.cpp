@@ -31,7 +31,8 @@ TetsByCorner::TetsByCorner(const SuspectMesh& mesh) : first_(3 * mesh.vertex_cou
     }
     // Each thread counts what its share of the tetrahedra has for every slot, and then knows where to put it: behind that of the shares before.
     constexpr std::size_t kMostShares = 8;
-    const std::size_t shares = std::min<std::size_t>(workers.threads(), kMostShares), grain = (mesh.tet_count() + shares - 1) / shares, slots = first_.size() - 2;
+    const std::size_t shares = std::min<std::size_t>(workers.threads(), kMostShares), grain = (mesh.tet_count() + shares - 1) / shares;
+    const std::size_t slots = first_.size() - 2;
     std::vector<std::vector<std::uint32_t>> next(shares);
     workers.for_ranges(mesh.tet_count(), grain, [&](std::size_t begin, std::size_t end, std::size_t share) {
         next[share].assign(slots, 0);

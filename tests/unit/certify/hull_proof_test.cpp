@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -142,8 +143,8 @@ TEST(HullProof, BodiesWithinBodiesAreRefuted) {
         }
 }
 
-// Two copies of one grid, by how much they are shifted: they overlap, touch with other vertices than each other's, or are apart, by less than their faces' spheres
-// allow or by more.
+// Two copies of one grid, by how much they are shifted: they overlap, touch with other vertices than each other's, or are apart, by less than their
+// faces' spheres allow or by more.
 TEST(HullProof, CopiesAreToldApart) {
     const TetMesh grid = cells(2, [](const Vec3&) { return true; });
     struct Case {
@@ -167,7 +168,14 @@ TEST(HullProof, CopiesAreToldApart) {
                 EXPECT_FALSE(look(mesh).embedded);
             }
             const auto counts = testing::count_by_brute_force(mesh);
-            for (const char* name : {"delaunay", "gabriel_subfaces", "gabriel_subsegments"}) EXPECT_EQ(certificate.find(name)->violations, counts.at(name)) << name;
+            // With the same weight everywhere spheres are what they are without.
+            mesh.weights.assign(mesh.vertices.size(), which % 3 == 0 ? 0.125 : 0);
+            const Certificate weighted = certify(mesh);
+            EXPECT_EQ(weighted.find("disjoint_tets")->violations, certificate.find("disjoint_tets")->violations);
+            for (const std::string name : {"delaunay", "gabriel_subfaces", "gabriel_subsegments"}) {
+                EXPECT_EQ(certificate.find(name)->violations, counts.at(name)) << name;
+                EXPECT_EQ(weighted.find("weighted_" + name)->violations, counts.at(name)) << name;
+            }
         }
 }
 
