@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "certify/mesh_survey.hpp"
 
+#include <cstddef>
 #include <utility>
 
 namespace wellmesh::certifying {
@@ -21,8 +22,14 @@ std::vector<std::uint8_t> corners_of(const SuspectMesh& mesh, const Triangles& t
 MeshSurvey survey_mesh(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ShapeBound>& bounds,
                        const std::vector<std::uint64_t>& exempt) {
     MeshSurvey survey;
-    std::vector<std::uint8_t> expected = corners_of(mesh, mesh.mesh().subfaces, [](const Triangle& t) { return t; });
-    survey.shapes = survey_shapes(mesh, expected, bounds, exempt);
+    std::vector<std::uint8_t> expected;
+    if (mesh.mesh().subfaces.empty()) {  // surely not all of them
+        survey.shapes.classes.resize(mesh.tet_count());
+        for (std::size_t t = 0; t < mesh.tet_count(); ++t) survey.shapes.classes[t] = mesh.positive(t) ? TetClass::interior : TetClass::left_out;
+    } else {
+        expected = corners_of(mesh, mesh.mesh().subfaces, [](const Triangle& t) { return t; });
+        survey.shapes = survey_shapes(mesh, expected, bounds, exempt);
+    }
     survey.faces = survey_faces(mesh, stars, survey.shapes.classes);
     survey.on_constraint = corners_of(mesh, survey.faces.constraints, [](const ConstraintTriangle& t) { return t.v; });
     const bool as_expected = survey.on_constraint == expected;
