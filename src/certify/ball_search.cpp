@@ -211,6 +211,65 @@ bool BallSearch::excludes(const Ball& ball, const Vec3& point) {
     return excludes(ball, bounds);
 }
 
+bool BallSearch::list_near(std::span<const Ball> balls, Neighbourhood& near) const {
+    for (std::vector<double>& along : near.at_) along.clear();
+    near.numbers_.clear();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    for (const Ball& ball : balls) {
+        // Centre and radius from the least A and the largest N that they may have; 1e-12 is far more than the roundings here.
+        const BallForm<double>& form = ball.rough;
+        if (!(form.a_low > 0) || form.allowance != 0) return false;
+        const double scale = (1 + 1e-12) / (2 * form.a_low);
+        std::array<double, 3> most{};
+        for (std::size_t k = 0; k < 3; ++k) most[k] = std::abs(form.n[k]) + form.n_error[k];
+        const double radius = scale * std::sqrt(most[0] * most[0] + most[1] * most[1] + most[2] * most[2]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double base = coordinate(ball.base, k), slack = 1e-12 * (std::abs(base) + radius) + 1e-150;
+            box.low[k] = std::min(box.low[k], base + (std::min(0.0, scale * (form.n[k] - form.n_error[k])) - radius - slack));
+            box.high[k] = std::max(box.high[k], base + (std::max(0.0, scale * (form.n[k] + form.n_error[k])) + radius + slack));
+        }
+    }
+    return list_in(box, 0, points_.size(), 0, near);
+}
+
+bool BallSearch::list_in(const Box& box, std::size_t begin, std::size_t end, std::size_t node, Neighbourhood& near) const {
+    if (end - begin > kLeaf) {
+        const std::size_t middle = begin + (end - begin) / 2, axis = axes_[node];
+        return (!(box.low[axis] <= cuts_[node]) || list_in(box, begin, middle, 2 * node + 1, near)) &&
+               (!(box.high[axis] >= cuts_[node]) || list_in(box, middle, end, 2 * node + 2, near));
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+        const Point& p = points_[i];
+        bool inside = true;
+        for (std::size_t k = 0; k < 3; ++k) inside &= (box.low[k] <= coordinate(p.at, k)) & (coordinate(p.at, k) <= box.high[k]);
+        if (!inside) continue;
+        for (std::size_t k = 0; k < 3; ++k) near.at_[k].push_back(coordinate(p.at, k));
+        near.numbers_.push_back(p.number);
+    }
+    return near.numbers_.size() <= kMostNear;
+}
+
+// As excludes() does it for a point: each axis adds (a x - n) x, with an error of (n_error + 16 roundings of n) |x|.
+void BallSearch::Neighbourhood::measure(const Ball& ball) {
+    constexpr double kRounding = std::numeric_limits<double>::epsilon();
+    const std::size_t n = numbers_.size();
+    margins_.resize(n);
+    const BallForm<double>& form = ball.rough;
+    std::array<double, 3> error{};
+    for (std::size_t k = 0; k < 3; ++k) error[k] = form.n_error[k] + 16 * kRounding * std::abs(form.n[k]);
+    const double* const xs = at_[0].data();
+    const double* const ys = at_[1].data();
+    const double* const zs = at_[2].data();
+    double* const margins = margins_.data();
+    for (std::size_t i = 0; i < n; ++i) {
+        const double x = xs[i] - ball.base.x, y = ys[i] - ball.base.y, z = zs[i] - ball.base.z;
+        const double value = ((form.a_low * x - form.n[0]) * x + (form.a_low * y - form.n[1]) * y) + (form.a_low * z - form.n[2]) * z;
+        const double slack = (error[0] * std::abs(x) + error[1] * std::abs(y)) + error[2] * std::abs(z);
+        margins[i] = value - slack;
+    }
+}
+
 double BallSearch::depth(const Ball& ball, std::uint32_t vertex) const {
     const LongVec q = difference((*originals_)[vertex], (1 / scale_) * ball.base, scale_);
     const Long a = ball.a, base_weight = static_cast<Long>(ball.base_weight);

@@ -13,9 +13,11 @@
 // conflict iff f(q) < A (w_p - w_a). The search allows for the largest weight of all.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/workers.hpp"
@@ -62,6 +64,24 @@ public:
         for (std::size_t axis = 0; axis < 3; ++axis) bounds.update(ball, axis);
         return search(ball, 0, points_.size(), 0, bounds, visit);
     }
+
+    /// The points near a few balls, to be held against each of them: faster than a search for each where the balls are neighbours.
+    class Neighbourhood {
+    public:
+        /// The same as BallSearch::any_in, for one of the balls.
+        template <class Visit>
+        bool any_in(const Ball& ball, Visit&& visit);
+
+    private:
+        friend class BallSearch;
+        /// Margins of all points: positive where a point is surely outside.
+        void measure(const Ball& ball);
+        std::array<std::vector<double>, 3> at_;  // scaled
+        std::vector<double> margins_;
+        std::vector<std::uint32_t> numbers_, found_;
+    };
+    /// @return whether there are few enough, and the balls are not those of almost collinear corners.
+    bool list_near(std::span<const Ball> balls, Neighbourhood& near) const;
 
     /// By how much the vertex is inside, as a fraction of the squared radius: 1 - |p - centre|^2 / R^2, rounded (64 bits of mantissa
     /// where long double has them). With weights: its weight minus its power, over |a - centre|^2 + |w_a| + |w_p|.
@@ -114,6 +134,9 @@ private:
         far.update(ball, axis);
         return !excludes(ball, far) && search(ball, far_begin, far_end, far_node, far, visit);
     }
+    static constexpr std::size_t kMostNear = 512;  ///< in a neighbourhood
+    /// Lists the points in the box. @return false: there are more than kMostNear.
+    bool list_in(const Box& box, std::size_t begin, std::size_t end, std::size_t node, Neighbourhood& near) const;
     [[nodiscard]] static double coordinate(const Vec3& p, std::size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
     double scale_ = 1;                 // power of two: tree coordinates are at most 1, so no fourth power under- or overflows
@@ -125,5 +148,18 @@ private:
     std::vector<double> cuts_;          // scaled: a coordinate of the first half is at most this, of the second at least
     Box root_{};
 };
+
+template <class Visit>
+bool BallSearch::Neighbourhood::any_in(const Ball& ball, Visit&& visit) {
+    measure(ball);
+    found_.resize(margins_.size() + 1);
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < margins_.size(); ++i) {
+        found_[n] = static_cast<std::uint32_t>(i);
+        n += !(margins_[i] > 0);
+    }
+    found_.resize(n);
+    return std::any_of(found_.begin(), found_.end(), [&](std::uint32_t i) { return visit(numbers_[i]); });
+}
 
 }  // namespace wellmesh::certifying

@@ -11,10 +11,11 @@
 #include <string>
 #include <utility>
 
+#include "certify/hull_proof.hpp"
 #include "certify/mesh_faces.hpp"
+#include "certify/mesh_survey.hpp"
 #include "certify/plc_claims.hpp"
 #include "certify/shape_claims.hpp"
-#include "certify/shape_survey.hpp"
 #include "certify/space_claims.hpp"
 #include "certify/suspect_mesh.hpp"
 #include "certify/tets_by_corner.hpp"
@@ -132,26 +133,32 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
     const VertexPlaces places(mesh.points(), mesh.workers());
     const Claim positive = claim_positive(mesh), distinct = claim_distinct_vertices(mesh, places), used = claim_used_vertices(mesh);
     const TetsByCorner stars(mesh);
-    FaceSurvey faces = survey_faces(mesh, stars);
+    MeshSurvey survey = survey_mesh(mesh, stars, wanted_bounds(options), options.exempt);
+    const FaceSurvey& faces = survey.faces;
+    store_statistics(survey, certificate);
     poll();
     const bool faces_in_order = !broken(positive) && !broken(faces.face_sharing) && !broken(faces.opposite_sides);
-    const BallSearch search(mesh.points(), mesh.weights(), mesh.workers());
-    const Claim disjoint = claim_disjoint(mesh, search, faces.constraints, faces_in_order);
+    const HullProof proof(mesh, faces.constraints, faces_in_order);
+    poll();
+    VertexSearch search(mesh);
+    const Claim disjoint = claim_disjoint(mesh, search, faces.constraints, proof, faces_in_order);
     claims.insert(claims.end(), {positive, faces.face_sharing, faces.opposite_sides, faces.distinct_tets, disjoint, claim_conservation(mesh, faces), distinct, used,
                                  faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh, stars)});
     poll();
-    const GabrielFindings subfaces = claim_gabriel_subfaces(mesh, search, faces.constraints);
+    const bool locally_delaunay = faces_in_order && disjoint.state == Claim::State::proven && faces.locally_not_delaunay == 0 && !broken(used);
+    const bool by_hull = locally_delaunay && proof.hull_is_clear();
+    const GabrielFindings subfaces = claim_gabriel_subfaces(mesh, search, faces.constraints, by_hull && proof.interfaces_are_clear());
     poll();
-    const bool by_faces = faces_in_order && disjoint.state == Claim::State::proven && faces.locally_not_delaunay == 0 && !broken(used) && subfaces.touched_hull_faces == 0;
-    claims.push_back(claim_delaunay(mesh, search, by_faces));
+    claims.push_back(claim_delaunay(mesh, search, by_hull || (locally_delaunay && subfaces.touched_hull_faces == 0)));
     claims.push_back(subfaces.claim);
     poll();
-    claims.push_back(claim_gabriel_subsegments(mesh, search, find_constraint_segments(mesh, faces.constraints, options.flat_angle_rad)));
+    const std::vector<ConstraintSegment> segments = find_constraint_segments(mesh, faces.constraints, options.flat_angle_rad);
+    claims.push_back(claim_gabriel_subsegments(mesh, search, segments, by_hull && proof.segments_are_clear(stars, segments)));
     poll();
-    certificate.regions = measure_regions(mesh);
+    certificate.regions = survey.shapes.regions;
     append_plc_claims({mesh, stars, places, faces.constraints}, options, plc, certificate);
     poll();
-    const std::vector<Claim> about_shape = shape_claims(mesh, stars, faces.constraints, options, certificate);
+    const std::vector<Claim> about_shape = shape_claims(mesh, options, std::move(survey));
     claims.insert(claims.end(), about_shape.begin(), about_shape.end());
 }
 
@@ -198,7 +205,7 @@ void measure_shape(const TetMesh& mesh, Certificate& certificate) {
     if (!usable(mesh, scratch)) return;
     const SuspectMesh suspect(mesh);
     const TetsByCorner stars(suspect);
-    measure_shapes(suspect, stars, survey_faces(suspect, stars).constraints, certificate);
+    store_statistics(survey_mesh(suspect, stars, {}, {}), certificate);
 }
 
 }  // namespace wellmesh

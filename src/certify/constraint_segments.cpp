@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 
 #include "core/vec3_math.hpp"
 
@@ -35,14 +36,20 @@ bool flat_together(const SuspectMesh& mesh, const Edge& e, std::uint32_t o0, std
 }  // namespace
 
 std::vector<ConstraintSegment> find_constraint_segments(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, double flat_angle) {
-    std::vector<EdgeWithOpposite> edges;
-    edges.reserve(3 * triangles.size());
-    for (const ConstraintTriangle& t : triangles)
-        for (std::size_t i = 0; i < 3; ++i) edges.push_back({sorted(Edge{t.v[i], t.v[(i + 1) % 3]}), t.v[(i + 2) % 3]});
-    std::sort(edges.begin(), edges.end(), [](const EdgeWithOpposite& a, const EdgeWithOpposite& b) {
-        const auto key = [](const EdgeWithOpposite& e) { return std::uint64_t{e.v[0]} << 32 | e.v[1]; };
-        return key(a) != key(b) ? key(a) < key(b) : a.opposite < b.opposite;
-    });
+    // Sorted into their lower ends' places, then each of those by itself.
+    std::vector<std::uint32_t> first(mesh.vertex_count() + 2, 0);
+    const auto for_edges = [&](auto&& visit) {
+        for (const ConstraintTriangle& t : triangles)
+            for (std::size_t i = 0; i < 3; ++i) visit(EdgeWithOpposite{sorted(Edge{t.v[i], t.v[(i + 1) % 3]}), t.v[(i + 2) % 3]});
+    };
+    for_edges([&](const EdgeWithOpposite& e) { ++first[std::size_t{e.v[0]} + 2]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<EdgeWithOpposite> edges(3 * triangles.size());
+    for_edges([&](const EdgeWithOpposite& e) { edges[first[std::size_t{e.v[0]} + 1]++] = e; });
+    for (std::size_t v = 0; v + 2 < first.size(); ++v)
+        std::sort(edges.begin() + first[v], edges.begin() + first[v + 1], [](const EdgeWithOpposite& a, const EdgeWithOpposite& b) {
+            return a.v[1] != b.v[1] ? a.v[1] < b.v[1] : a.opposite < b.opposite;
+        });
     std::vector<ConstraintSegment> segments;
     for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
         while (j < edges.size() && edges[j].v == edges[i].v) ++j;

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
+#include <memory>
+#include <span>
 #include <utility>
 
+#include "certify/sound_star.hpp"
 #include "core/vec3_math.hpp"
 
 namespace wellmesh::certifying {
@@ -38,7 +40,10 @@ std::vector<ListedTriangle> listed_triangles(const SuspectMesh& mesh) {
     std::vector<ListedTriangle> listed;
     listed.reserve(subfaces.size());
     for (std::size_t i = 0; i < subfaces.size(); ++i) listed.push_back({sorted(subfaces[i]), static_cast<std::uint32_t>(i)});
-    std::sort(listed.begin(), listed.end(), [](const ListedTriangle& a, const ListedTriangle& b) { return a.v != b.v ? a.v < b.v : a.number < b.number; });
+    std::sort(listed.begin(), listed.end(), [](const ListedTriangle& a, const ListedTriangle& b) {
+        const auto order = a.v <=> b.v;
+        return order < 0 || (order == 0 && a.number < b.number);
+    });
     return listed;
 }
 
@@ -47,141 +52,46 @@ struct Findings {
     std::uint64_t faces = 0, interior_faces = 0, boundary_faces = 0, locally_not_delaunay = 0, two_sided_faces = 0;
     std::vector<ConstraintTriangle> constraints;
     ClaimBuilder face_sharing, opposite_sides, distinct_tets, listed_exist;
+    EdgeLengths edges;
+    bool in_order = true;  ///< all stars are sound
 };
 
-/// The faces at one vertex in sound surroundings: all tetrahedra positive, no face of more than two, these on either side of it. Says so when they
-/// are not, and has found nothing then.
-class SoundFaces {
-public:
-    explicit SoundFaces(const SuspectMesh& mesh) : mesh_(mesh) {}
+void report_not_a_face(const SuspectMesh& mesh, const ListedTriangle& l, Findings& found) {
+    found.listed_exist.violated(EntityKind::triangle, l.number + std::uint64_t{1}, mesh.centroid(l.v.data(), 3),
+                                [&] { return fmt::format("vertices {} {} {} span no face of a tetrahedron", l.v[0] + 1, l.v[1] + 1, l.v[2] + 1); });
+}
 
-    /// @return whether they are sound.
-    bool collect(std::uint32_t vertex, std::span<const std::uint32_t> tets) {
-        vertex_ = vertex;
-        faces_.clear();
-        pairs_ = 0;
-        const std::size_t slots = std::bit_ceil(std::max<std::size_t>(16, 4 * tets.size()));
-        table_.assign(slots, kNone);
-        shift_ = 64 - std::countr_zero(slots);
-        for (const std::uint32_t t : tets) {
-            if (!mesh_.positive(t)) return false;
-            // Of a positive tetrahedron the side of a face on which its apex lies follows from the order of its corners: the apex at place i
-            // takes 3 - i transpositions to the end.
-            const AscendingTet tet(mesh_.mesh().tets[t]);
-            const auto& v = tet.v;
-            if (v[0] == vertex) {
-                if (!add(v[1], v[2], v[3], t, !tet.odd) || !add(v[1], v[3], v[2], t, tet.odd) || !add(v[2], v[3], v[1], t, !tet.odd)) return false;
-            } else if (v[1] == vertex) {
-                if (!add(v[2], v[3], v[0], t, tet.odd)) return false;
-            } else {
-                break;  // from here on it is the third corner, which is the lowest of no face
-            }
+void report(const SuspectMesh& mesh, SoundStar& star, std::uint32_t vertex, std::span<const ListedTriangle> listed, bool several_regions,
+            Findings& found) {
+    const std::span<const SoundStar::Face> faces = star.faces();
+    found.faces += faces.size();
+    found.interior_faces += star.pairs();
+    found.two_sided_faces += star.pairs();
+    found.boundary_faces += faces.size() - star.pairs();
+    found.locally_not_delaunay += star.count_not_delaunay();
+    found.edges.add(mesh, vertex, star.edges());
+    if (listed.empty() && !several_regions && star.pairs() == faces.size()) return;
+    const std::size_t first = found.constraints.size();
+    for (std::size_t i = 0; i < listed.size();) {
+        const ListedTriangle& l = listed[i];
+        if (SoundStar::Face* face = star.find(l.v[1], l.v[2])) {
+            face->listed = l.number;
+        } else {
+            found.constraints.push_back({l.v, {kNone, kNone}, l.number, false, false});
         }
-        return true;
+        for (const Triangle v = l.v; i < listed.size() && listed[i].v == v; ++i)
+            if (star.find(v[1], v[2]) == nullptr) report_not_a_face(mesh, listed[i], found);
     }
-
-    void report(std::span<const ListedTriangle> listed, Findings& found) {
-        found.faces += faces_.size();
-        found.interior_faces += pairs_;
-        found.two_sided_faces += pairs_;
-        found.boundary_faces += faces_.size() - pairs_;
-        const bool regions = !mesh_.mesh().tet_regions.empty();
-        const std::size_t first = found.constraints.size();
-        for (std::size_t i = 0; i < listed.size();) {
-            const ListedTriangle& l = listed[i];
-            if (Face* face = find(l.v[1], l.v[2])) {
-                face->listed = l.number;
-            } else {
-                found.constraints.push_back({l.v, {kNone, kNone}, l.number, false, false});
-            }
-            for (const Triangle v = l.v; i < listed.size() && listed[i].v == v; ++i)
-                if (find(v[1], v[2]) == nullptr) not_a_face(mesh_, listed[i], found);
-        }
-        for (const Face& f : faces_) {
-            const bool on_hull = f.tets[1] == kNone;
-            if (!on_hull && f.listed == kNone && !(regions && mesh_.region(f.tets[0]) != mesh_.region(f.tets[1]))) continue;
-            ConstraintTriangle c{{vertex_, f.middle, f.highest}, f.tets, f.listed, true, on_hull};
-            if (!f.first_is_positive) std::swap(c.tets[0], c.tets[1]);
-            found.constraints.push_back(c);
-        }
-        std::sort(found.constraints.begin() + static_cast<std::ptrdiff_t>(first), found.constraints.end(),
-                  [](const ConstraintTriangle& a, const ConstraintTriangle& b) { return a.v < b.v; });
-        found.locally_not_delaunay += count_not_delaunay();
+    for (const SoundStar::Face& f : faces) {
+        const bool on_hull = f.tets[1] == kNone;
+        if (!on_hull && f.listed == kNone && !(several_regions && mesh.region(f.tets[0]) != mesh.region(f.tets[1]))) continue;
+        ConstraintTriangle c{{vertex, star.edges()[f.middle].vertex, star.edges()[f.highest].vertex}, f.tets, f.listed, true, on_hull};
+        if (!f.first_is_positive) std::swap(c.tets[0], c.tets[1]);
+        found.constraints.push_back(c);
     }
-
-    static void not_a_face(const SuspectMesh& mesh, const ListedTriangle& l, Findings& found) {
-        found.listed_exist.violated(EntityKind::triangle, l.number + std::uint64_t{1}, mesh.centroid(l.v.data(), 3),
-                                    [&] { return fmt::format("vertices {} {} {} span no face of a tetrahedron", l.v[0] + 1, l.v[1] + 1, l.v[2] + 1); });
-    }
-
-private:
-    struct Face {
-        std::uint32_t middle, highest;
-        std::array<std::uint32_t, 2> tets, apexes;
-        std::uint32_t listed;
-        bool first_is_positive;  ///< the first tetrahedron is on the side that the face's normal points to
-    };
-
-    [[nodiscard]] std::size_t place(std::uint32_t middle, std::uint32_t highest) const {
-        return static_cast<std::size_t>(((std::uint64_t{middle} << 32 | highest) * 0x9E3779B97F4A7C15U) >> shift_);
-    }
-    bool add(std::uint32_t middle, std::uint32_t highest, std::uint32_t top, std::uint32_t tet, bool positive) {
-        for (std::size_t i = place(middle, highest);; i = (i + 1) & (table_.size() - 1)) {
-            if (table_[i] == kNone) {
-                table_[i] = static_cast<std::uint32_t>(faces_.size());
-                faces_.push_back({middle, highest, {tet, kNone}, {top, kNone}, kNone, positive});
-                return true;
-            }
-            Face& face = faces_[table_[i]];
-            if (face.middle != middle || face.highest != highest) continue;
-            if (face.tets[1] != kNone || face.first_is_positive == positive) return false;
-            face.tets[1] = tet;
-            face.apexes[1] = top;
-            ++pairs_;
-            return true;
-        }
-    }
-    [[nodiscard]] Face* find(std::uint32_t middle, std::uint32_t highest) {
-        for (std::size_t i = place(middle, highest); table_[i] != kNone; i = (i + 1) & (table_.size() - 1))
-            if (Face& face = faces_[table_[i]]; face.middle == middle && face.highest == highest) return &face;
-        return nullptr;
-    }
-    /// Interior faces with an apex inside the sphere of the other side's tetrahedron.
-    [[nodiscard]] std::uint64_t count_not_delaunay() const {
-        std::uint64_t count = 0;
-        if (mesh_.is_weighted()) {
-            for (const Face& f : faces_)
-                if (f.tets[1] != kNone) count += mesh_.in_sphere(f.tets[0], f.apexes[1]) == Sign::positive;
-            return count;
-        }
-        // The first tetrahedron's corners and the other's apex, the common vertex last: an even permutation if it is (vertex, middle, highest, apex).
-        const Vec3& origin = mesh_.point(vertex_);
-        std::array<std::array<const Vec3*, 4>, 4> rows{};
-        std::array<Sign, 4> inside{}, signs{};
-        std::size_t n = 0;
-        const auto evaluate = [&] {
-            for (std::size_t i = n; i < 4; ++i) rows[i] = rows[0];
-            mesh_.predicates().insphere_of_four_padded(rows, origin, signs);
-            for (std::size_t i = 0; i < n; ++i) count += signs[i] == inside[i];
-            n = 0;
-        };
-        for (const Face& f : faces_) {
-            if (f.tets[1] == kNone) continue;
-            rows[n] = {&mesh_.point(f.middle), &mesh_.point(f.highest), &mesh_.point(f.apexes[0]), &mesh_.point(f.apexes[1])};
-            inside[n++] = f.first_is_positive ? Sign::positive : Sign::negative;
-            if (n == 4) evaluate();
-        }
-        if (n > 0) evaluate();
-        return count;
-    }
-
-    const SuspectMesh& mesh_;
-    std::uint32_t vertex_ = 0;
-    std::vector<Face> faces_;
-    std::vector<std::uint32_t> table_;  // by open addressing, numbers in faces_
-    int shift_ = 0;
-    std::uint64_t pairs_ = 0;
-};
+    std::sort(found.constraints.begin() + static_cast<std::ptrdiff_t>(first), found.constraints.end(),
+              [](const ConstraintTriangle& a, const ConstraintTriangle& b) { return a.v < b.v; });
+}
 
 /// The faces at one vertex whatever the tetrahedra are like, in ascending order.
 class AnyFaces {
@@ -260,7 +170,7 @@ private:
     std::uint32_t take_listed(const Triangle& face) {
         for (; !listed_.empty() && listed_.front().v < face; listed_ = listed_.subspan(1)) {
             const ListedTriangle& l = listed_.front();
-            SoundFaces::not_a_face(mesh_, l, found_);
+            report_not_a_face(mesh_, l, found_);
             if (found_.constraints.empty() || found_.constraints.back().v != l.v) found_.constraints.push_back({l.v, {kNone, kNone}, l.number, false, false});
         }
         if (listed_.empty() || listed_.front().v != face) return kNone;
@@ -289,33 +199,60 @@ private:
     std::vector<std::uint32_t> tets_;
 };
 
-void survey_range(const SuspectMesh& mesh, const TetsByCorner& stars, std::span<const ListedTriangle> listed, std::uint32_t begin, std::uint32_t end, Findings& found) {
-    SoundFaces sound(mesh);
-    AnyFaces any(mesh, found);
-    auto l = std::lower_bound(listed.begin(), listed.end(), begin, [](const ListedTriangle& t, std::uint32_t v) { return t.v[0] < v; });
-    for (std::uint32_t v = begin; v < end; ++v) {
-        const auto first = l;
-        while (l != listed.end() && l->v[0] == v) ++l;
-        const std::span<const ListedTriangle> here(first, l);
-        if (sound.collect(v, stars.of(v))) sound.report(here, found);
-        else any.survey(v, stars.of(v), here);
+class VertexRange {
+public:
+    VertexRange(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<TetClass>& classes)
+        : mesh_(mesh), stars_(stars), classes_(classes), listed_(listed_triangles(mesh)) {
+        const auto& regions = mesh.mesh().tet_regions;
+        several_regions_ = std::any_of(regions.begin(), regions.end(), [&](std::int32_t r) { return r != regions.front(); });
     }
-}
+    [[nodiscard]] std::size_t listed() const { return listed_.size(); }
+
+    void operator()(std::uint32_t begin, std::uint32_t end, SoundStar& star, Findings& found) const {
+        AnyFaces any(mesh_, found);
+        auto l = std::lower_bound(listed_.begin(), listed_.end(), begin, [](const ListedTriangle& t, std::uint32_t v) { return t.v[0] < v; });
+        for (std::uint32_t v = begin; v < end; ++v) {
+            const auto first = l;
+            while (l != listed_.end() && l->v[0] == v) ++l;
+            const std::span<const ListedTriangle> here(first, l);
+            if (star.collect(v, stars_, classes_)) {
+                report(mesh_, star, v, here, several_regions_, found);
+            } else {
+                any.survey(v, stars_.of(v), here);
+                found.in_order = false;
+            }
+        }
+    }
+
+private:
+    const SuspectMesh& mesh_;
+    const TetsByCorner& stars_;
+    const std::vector<TetClass>& classes_;
+    std::vector<ListedTriangle> listed_;
+    bool several_regions_ = false;
+};
 
 }  // namespace
 
-FaceSurvey survey_faces(const SuspectMesh& mesh, const TetsByCorner& stars) {
-    const std::vector<ListedTriangle> listed = listed_triangles(mesh);
+FaceSurvey survey_faces(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<TetClass>& classes) {
+    const VertexRange look(mesh, stars, classes);
     std::vector<Findings> parts((mesh.vertex_count() + kVertexGrain - 1) / kVertexGrain);
+    ScratchPool<SoundStar> pool;
     mesh.workers().for_ranges(mesh.vertex_count(), kVertexGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        survey_range(mesh, stars, listed, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), parts[piece]);
+        std::unique_ptr<SoundStar> star = pool.take([&] { return std::make_unique<SoundStar>(mesh); });
+        look(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), *star, parts[piece]);
+        pool.give_back(std::move(star));
     });
     FaceSurvey survey;
     ClaimBuilder face_sharing("face_sharing", "No face is shared by more than two tetrahedra.");
     ClaimBuilder opposite_sides("opposite_sides", "Two tetrahedra that share a face lie on opposite sides of it.");
     ClaimBuilder distinct_tets("distinct_tets", "No two tetrahedra have the same four vertices.");
     ClaimBuilder listed_exist("listed_subfaces_exist", "Every listed triangle is a face of a tetrahedron.");
+    EdgeLengths edges;
+    bool in_order = true;
     for (Findings& part : parts) {
+        in_order = in_order && part.in_order;
+        edges.add(part.edges);
         survey.faces += part.faces;
         survey.interior_faces += part.interior_faces;
         survey.boundary_faces += part.boundary_faces;
@@ -328,10 +265,11 @@ FaceSurvey survey_faces(const SuspectMesh& mesh, const TetsByCorner& stars) {
         distinct_tets.absorb(std::move(part.distinct_tets));
         listed_exist.absorb(std::move(part.listed_exist));
     }
+    if (in_order) survey.edges = edges;
     face_sharing.checked(survey.faces);
     opposite_sides.checked(survey.two_sided_faces);
     distinct_tets.checked(mesh.tet_count());
-    listed_exist.checked(listed.size());
+    listed_exist.checked(look.listed());
     survey.face_sharing = face_sharing.decided();
     survey.opposite_sides = opposite_sides.decided();
     survey.distinct_tets = distinct_tets.decided();

@@ -42,23 +42,23 @@ public:
     PlcComparison(const SurveyedMesh& surveyed, const CertifyOptions& options, const PlcSurface& surface)
         : mesh_(surveyed.mesh), stars_(surveyed.stars), places_(surveyed.places), constraints_(surveyed.triangles), surface_(surface),
           tolerance_(options.tolerance * surface.diagonal), relative_tolerance_(options.tolerance) {
-        std::vector<Corners> all, hull, separating;
-        all.reserve(constraints_.size());
-        for (std::uint32_t i = 0; i < constraints_.size(); ++i) {
-            const ConstraintTriangle& t = constraints_[i];
-            all.push_back({mesh_.point(t.v[0]), mesh_.point(t.v[1]), mesh_.point(t.v[2])});
-            if (t.on_hull) hull.push_back(all.back());
-            if (!t.is_face || (!t.on_hull && mesh_.region(t.tets[0]) == mesh_.region(t.tets[1]))) continue;
-            separating.push_back(all.back());
-            separating_.push_back(i);
-        }
-        // Mostly they are the same: every constraint triangle is on the hull.
-        covered_ = std::make_shared<const TriangleTree>(std::move(all));
-        const auto tree_of = [&](std::vector<Corners>&& triangles) {
-            return triangles.size() == constraints_.size() ? covered_ : std::make_shared<const TriangleTree>(std::move(triangles));
+        const auto separates = [&](const ConstraintTriangle& t) {
+            return t.is_face && (t.on_hull || mesh_.region(t.tets[0]) != mesh_.region(t.tets[1]));
         };
-        separators_ = tree_of(std::move(separating));
-        hull_ = tree_of(std::move(hull));
+        for (std::uint32_t i = 0; i < constraints_.size(); ++i)
+            if (separates(constraints_[i])) separating_.push_back(i);
+        const auto tree_of = [&](auto&& wanted) {
+            std::vector<Corners> triangles;
+            triangles.reserve(constraints_.size());
+            for (const ConstraintTriangle& t : constraints_)
+                if (wanted(t)) triangles.push_back({mesh_.point(t.v[0]), mesh_.point(t.v[1]), mesh_.point(t.v[2])});
+            return std::make_shared<const TriangleTree>(std::move(triangles), mesh_.workers());
+        };
+        // Mostly they are the same: every constraint triangle is on the hull.
+        const auto on_hull = [](const ConstraintTriangle& t) { return t.on_hull; };
+        covered_ = tree_of([](const ConstraintTriangle&) { return true; });
+        separators_ = separating_.size() == constraints_.size() ? covered_ : tree_of(separates);
+        hull_ = std::all_of(constraints_.begin(), constraints_.end(), on_hull) ? covered_ : tree_of(on_hull);
         facet_wanted_.assign(surface.facets.empty() ? 0 : surface.facets.back() + std::size_t{1}, false);
         triangles_.resize(surface.facets.size());
         mesh_.workers().for_ranges(triangles_.size(), kSmallGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -81,6 +81,8 @@ public:
         std::vector<Worst> parts((constraints_.size() + kSmallGrain - 1) / kSmallGrain);
         const std::vector<std::uint8_t> new_corners = find_new_corners();
         const double rounding = 4 * std::numeric_limits<double>::epsilon() * mesh_.largest_coordinate();
+        // The distance to any one triangle is enough to know of where it can't change what is reported.
+        const auto distance_to = [&](const Vec3& p, std::uint32_t i) { return std::sqrt(squared_distance(p, surface_.triangles.triangles()[i])); };
         look_in_ranges(mesh_.workers(), constraints_.size(), kSmallGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
             Worst& worst = parts[begin / kSmallGrain];
             std::uint32_t hint = 0;
@@ -88,13 +90,20 @@ public:
                 const ConstraintTriangle& t = constraints_[i];
                 const auto& [a, b, c] = covered_->triangles()[i];
                 const std::array<Vec3, 7> probes{a, b, c, a + 0.5 * (b - a), b + 0.5 * (c - b), c + 0.5 * (a - c), centroid_of({a, b, c})};
+                const std::uint32_t named = named_triangle(t);
                 double off = 0;
                 std::size_t where = 0;
                 for (std::size_t k = 0; k < probes.size(); ++k) {
+                    const bool is_new = k < 3 && (new_corners[i] >> k & 1) != 0;
+                    const double harmless = std::min({tolerance_, worst.of_all, is_new ? std::min(rounding, worst.of_vertex) : tolerance_});
+                    double known = distance_to(probes[k], hint);
+                    const double other = known > harmless && named != hint ? distance_to(probes[k], named) : known;
+                    if (other < known) known = other, hint = named;
+                    if (known <= harmless) continue;
                     const auto nearest = surface_.triangles.nearest(probes[k], hint);
                     hint = nearest.triangle;
                     if (nearest.distance > off) off = nearest.distance, where = k;
-                    if (k >= 3 || (new_corners[i] >> k & 1) == 0) continue;
+                    if (!is_new) continue;
                     worst.far_vertices += nearest.distance > rounding;
                     worst.of_vertex = std::max(worst.of_vertex, nearest.distance);
                 }
@@ -176,6 +185,13 @@ public:
     Claim region_volumes(std::vector<RegionVolume>& regions) const;
 
 private:
+    /// A triangle of the PLC's facet that the mesh says the constraint triangle is on: likely to be near.
+    [[nodiscard]] std::uint32_t named_triangle(const ConstraintTriangle& t) const {
+        const std::vector<std::int32_t>& facets = mesh_.mesh().subface_facets;
+        if (t.listed >= facets.size() || facets[t.listed] <= 0) return 0;
+        const auto it = std::lower_bound(surface_.facets.begin(), surface_.facets.end(), static_cast<std::uint32_t>(facets[t.listed]) - 1);
+        return it == surface_.facets.end() ? 0 : static_cast<std::uint32_t>(it - surface_.facets.begin());
+    }
     /// What the mesh has where a triangle of the PLC is (by its centroid).
     enum class Part : std::uint8_t { covered, missing, outside };
     struct OnEdge {

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "certify/edge_lengths.hpp"
 #include "certify/shape_survey.hpp"
 #include "quality/tet_shape.hpp"
 
@@ -22,22 +21,10 @@ struct BoundClaim {
     double ShapeStatistics::* achieved;
 };
 
-ShapeSurvey measure(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ConstraintTriangle>& triangles, const std::vector<ShapeBound>& bounds,
-                    const std::vector<std::uint64_t>& exempt, Certificate& certificate) {
-    ShapeSurvey survey = survey_shapes(mesh, triangles, bounds, exempt);
-    certificate.all = survey.all;
-    certificate.interior = survey.interior;
-    certificate.boundary = survey.boundary;
-    certificate.unexempt = survey.unexempt;
-    measure_edges(mesh, stars, survey.classes, certificate.all, certificate.interior, certificate.boundary);
-    return survey;
-}
-
 /// What an input angle forces is at the boundary: between two cells of the input.
-Claim claim_exemptions(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<std::uint64_t>& exempt) {
+Claim claim_exemptions(const SuspectMesh& mesh, std::vector<std::uint8_t> on_constraint, const std::vector<std::uint64_t>& exempt) {
     ClaimBuilder claim("exemptions", "Every tetrahedron that is exempt from the bounds has two vertices on constraint triangles or listed subsegments.");
     if (exempt.empty()) return claim.undecided("none is exempt");
-    std::vector<std::uint8_t> on_constraint = vertices_on(mesh, triangles);
     for (const auto& edge : mesh.mesh().subsegments)
         for (const std::uint32_t v : edge)
             if (v < on_constraint.size()) on_constraint[v] = 1;
@@ -54,14 +41,7 @@ Claim claim_exemptions(const SuspectMesh& mesh, const std::vector<ConstraintTria
     return claim.decided();
 }
 
-}  // namespace
-
-void measure_shapes(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ConstraintTriangle>& triangles, Certificate& certificate) {
-    measure(mesh, stars, triangles, {}, {}, certificate);
-}
-
-std::vector<Claim> shape_claims(const SuspectMesh& mesh, const TetsByCorner& stars, const std::vector<ConstraintTriangle>& triangles, const CertifyOptions& options,
-                                Certificate& certificate) {
+std::vector<BoundClaim> wanted_claims(const CertifyOptions& options) {
     using S = ShapeStatistics;
     using Where = ShapeBound::Where;
     const Where angles = options.min_dihedral_boundary_deg ? Where::interior : Where::everywhere, sigmas = options.min_sigma_boundary ? Where::interior : Where::everywhere;
@@ -83,9 +63,30 @@ std::vector<Claim> shape_claims(const SuspectMesh& mesh, const TetsByCorner& sta
     if (options.min_sigma_boundary)
         wanted.push_back({"sigma_boundary", "The volume of every tetrahedron at the boundary is at least its own bound times the cube of its shortest edge.",
                           {options.min_sigma_boundary, false, &TetShape::sigma, kSigma, Where::boundary}, &S::min_sigma});
+    return wanted;
+}
+
+}  // namespace
+
+void store_statistics(const MeshSurvey& survey, Certificate& certificate) {
+    certificate.all = survey.shapes.all;
+    certificate.interior = survey.shapes.interior;
+    certificate.boundary = survey.shapes.boundary;
+    certificate.unexempt = survey.shapes.unexempt;
+    survey.edges.store(certificate.all, certificate.interior, certificate.boundary);
+}
+
+std::vector<ShapeBound> wanted_bounds(const CertifyOptions& options) {
     std::vector<ShapeBound> bounds;
-    for (const BoundClaim& w : wanted) bounds.push_back(w.bound);
-    ShapeSurvey survey = measure(mesh, stars, triangles, bounds, options.exempt, certificate);
+    for (const BoundClaim& w : wanted_claims(options)) bounds.push_back(w.bound);
+    return bounds;
+}
+
+std::vector<Claim> shape_claims(const SuspectMesh& mesh, const CertifyOptions& options, MeshSurvey&& survey) {
+    using S = ShapeStatistics;
+    using Where = ShapeBound::Where;
+    ShapeSurvey& shapes = survey.shapes;
+    const std::vector<BoundClaim> wanted = wanted_claims(options);
     std::vector<Claim> claims;
     for (std::size_t k = 0; k < wanted.size(); ++k) {
         const auto& [name, statement, bound, achieved] = wanted[k];
@@ -94,12 +95,12 @@ std::vector<Claim> shape_claims(const SuspectMesh& mesh, const TetsByCorner& sta
             return where == Where::everywhere ? everywhere : where == Where::interior ? interior : boundary;
         };
         ClaimBuilder claim(name, statement);
-        claim.absorb(std::move(survey.exceedances[k]));
-        if (bound.limit) claim.checked(of(survey.unexempt, survey.unexempt_interior, survey.unexempt_boundary).tets);
-        claim.note(fmt::format("{} {:.6g}", bound.upper ? "largest" : "smallest", of(survey.unexempt, survey.interior, survey.boundary).*achieved));
+        claim.absorb(std::move(shapes.exceedances[k]));
+        if (bound.limit) claim.checked(of(shapes.unexempt, shapes.unexempt_interior, shapes.unexempt_boundary).tets);
+        claim.note(fmt::format("{} {:.6g}", bound.upper ? "largest" : "smallest", of(shapes.unexempt, shapes.interior, shapes.boundary).*achieved));
         claims.push_back(bound.limit ? claim.decided() : claim.undecided("no bound given"));
     }
-    claims.push_back(claim_exemptions(mesh, triangles, options.exempt));
+    claims.push_back(claim_exemptions(mesh, std::move(survey.on_constraint), options.exempt));
     return claims;
 }
 

@@ -122,7 +122,8 @@ private:
         if (!(limit > 0)) return true;
         // Four numbers have at most twice the root of the sum of their squares as their sum: mostly no root is needed.
         const double squared_surface = 4 * (s.areas[0][i] + s.areas[1][i] + s.areas[2][i] + s.areas[3][i]);
-        if ((s.scaled_radius[i] / volume) * (squared_surface / volume) <= 4 * limit * limit * (1 - kSlack)) return false;
+        // (An overflow on the left asks for roots; one on the right, where the left is finite, says what it should.)
+        if (s.scaled_radius[i] * squared_surface <= (4 * limit * limit * (1 - kSlack)) * volume * volume) return false;
         return !(aspect(s, i) <= limit);
     }
 
@@ -150,8 +151,15 @@ ShapeStatistics both(const ShapeStatistics& a, const ShapeStatistics& b) {
     return s;
 }
 
+/// Of the tetrahedra of one region.
+struct RegionSum {
+    std::uint64_t tets = 0;
+    long double six_volumes = 0;
+};
+
 /// What is found in one range.
 struct Part {
+    std::map<std::int32_t, RegionSum> regions;
     std::array<std::array<ShapeStatistics, 2>, 2> statistics;  // [at the boundary][exempt]
     std::vector<ClaimBuilder> exceedances;
 };
@@ -167,6 +175,7 @@ public:
         std::array<std::array<Extremes, 2>, 2> extremes;
         for (const bool boundary : {false, true}) extremes[boundary][0].set_bounds(bounds_, boundary);
         auto exempt = std::lower_bound(exempt_.begin(), exempt_.end(), begin);
+        auto region = part.regions.end();
         CornerLanes corners{};
         SquaredShapes shapes{};
         for (std::size_t first = begin; first < end; first += kShapeLanes) {
@@ -181,6 +190,9 @@ public:
                 const std::size_t t = first + i;
                 while (exempt != exempt_.end() && *exempt < t) ++exempt;
                 const bool is_exempt = exempt != exempt_.end() && *exempt == t;
+                if (region == part.regions.end() || region->first != mesh_.region(t)) region = part.regions.try_emplace(mesh_.region(t)).first;
+                ++region->second.tets;
+                region->second.six_volumes += static_cast<long double>(shapes.six_volumes[i]);
                 if (!mesh_.positive(t)) continue;
                 const auto& v = mesh_.mesh().tets[t];
                 const bool boundary = (on_constraint_[v[0]] | on_constraint_[v[1]] | on_constraint_[v[2]] | on_constraint_[v[3]]) != 0;
@@ -215,24 +227,22 @@ private:
 
 }  // namespace
 
-std::vector<std::uint8_t> vertices_on(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles) {
-    std::vector<std::uint8_t> on_constraint(mesh.vertex_count(), 0);
-    for (const ConstraintTriangle& t : triangles)
-        for (const std::uint32_t v : t.v) on_constraint[v] = 1;
-    return on_constraint;
-}
-
-ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<ShapeBound>& bounds,
+ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<std::uint8_t>& on_constraint, const std::vector<ShapeBound>& bounds,
                           const std::vector<std::uint64_t>& exempt) {
     ShapeSurvey survey;
     survey.classes.assign(mesh.tet_count(), TetClass::left_out);
     survey.exceedances.resize(bounds.size());
-    const std::vector<std::uint8_t> on_constraint = vertices_on(mesh, triangles);
     const BinTable bins;
     const RangeSurvey look(mesh, on_constraint, bounds, exempt, bins, survey.classes);
     std::vector<Part> parts((mesh.tet_count() + kGrain - 1) / kGrain);
     mesh.workers().for_ranges(mesh.tet_count(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) { look(begin, end, parts[piece]); });
+    std::map<std::int32_t, RegionSum> regions;
     for (Part& part : parts) {
+        for (const auto& [region, sum] : part.regions) {
+            RegionSum& whole = regions[region];
+            whole.tets += sum.tets;
+            whole.six_volumes += sum.six_volumes;
+        }
         const auto& [inside, outside] = part.statistics;
         survey.unexempt_interior = both(survey.unexempt_interior, inside[0]);
         survey.unexempt_boundary = both(survey.unexempt_boundary, outside[0]);
@@ -242,36 +252,8 @@ ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<ConstraintT
     }
     survey.unexempt = both(survey.unexempt_interior, survey.unexempt_boundary);
     survey.all = both(survey.interior, survey.boundary);
+    for (const auto& [region, sum] : regions) survey.regions.push_back({region, sum.tets, static_cast<double>(sum.six_volumes / 6), std::nullopt});
     return survey;
-}
-
-std::vector<RegionVolume> measure_regions(const SuspectMesh& mesh) {
-    struct Sum {
-        std::uint64_t tets = 0;
-        long double six_volumes = 0;
-    };
-    using Sums = std::map<std::int32_t, Sum>;
-    std::vector<Sums> parts((mesh.tet_count() + kGrain - 1) / kGrain);
-    mesh.workers().for_ranges(mesh.tet_count(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        Sums& sums = parts[piece];
-        auto sum = sums.end();
-        for (std::size_t t = begin; t < end; ++t) {
-            const auto& v = mesh.mesh().tets[t];
-            if (sum == sums.end() || sum->first != mesh.region(t)) sum = sums.try_emplace(mesh.region(t)).first;
-            ++sum->second.tets;
-            sum->second.six_volumes += static_cast<long double>(six_volumes(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])));
-        }
-    });
-    Sums sums;
-    for (const Sums& part : parts)
-        for (const auto& [region, sum] : part) {
-            Sum& whole = sums[region];
-            whole.tets += sum.tets;
-            whole.six_volumes += sum.six_volumes;
-        }
-    std::vector<RegionVolume> regions;
-    for (const auto& [region, sum] : sums) regions.push_back({region, sum.tets, static_cast<double>(sum.six_volumes / 6), std::nullopt});
-    return regions;
 }
 
 }  // namespace wellmesh::certifying

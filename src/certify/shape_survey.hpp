@@ -8,9 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "certify/edge_lengths.hpp"
-#include "certify/mesh_faces.hpp"
 #include "certify/suspect_mesh.hpp"
+#include "certify/upper_edges.hpp"
 #include "quality/tet_shape.hpp"
 #include "wellmesh/certificate.hpp"
 
@@ -29,22 +28,17 @@ struct ShapeBound {
     [[nodiscard]] bool kept(const TetShape& shape) const { return upper ? shape.*value <= *limit : shape.*value >= *limit; }
 };
 
-/// Positive tetrahedra only; nothing about edges.
+/// Positive tetrahedra only, but for the regions; nothing about edges.
 struct ShapeSurvey {
     ShapeStatistics all, interior, boundary, unexempt, unexempt_interior, unexempt_boundary;
+    std::vector<RegionVolume> regions;      ///< numbers and volumes of all tetrahedra, ascending
     std::vector<TetClass> classes;         ///< of all tetrahedra
     std::vector<ClaimBuilder> exceedances;  ///< of each bound, by tetrahedra that are not exempt
 };
 
 /// Extremes are within a rounding of the extreme; which tetrahedra keep a bound is decided by shape_of().
-/// @param exempt  ascending.
-[[nodiscard]] ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<ShapeBound>& bounds,
-                                        const std::vector<std::uint64_t>& exempt);
-
-/// One flag a vertex: whether it is a corner of one of the triangles.
-[[nodiscard]] std::vector<std::uint8_t> vertices_on(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles);
-
-/// Numbers and volumes of all tetrahedra by region, ascending.
-[[nodiscard]] std::vector<RegionVolume> measure_regions(const SuspectMesh& mesh);
+/// @param on_constraint  one flag a vertex: tetrahedra with such a corner are at the boundary. @param exempt  ascending.
+[[nodiscard]] ShapeSurvey survey_shapes(const SuspectMesh& mesh, const std::vector<std::uint8_t>& on_constraint,
+                                        const std::vector<ShapeBound>& bounds, const std::vector<std::uint64_t>& exempt);
 
 }  // namespace wellmesh::certifying

@@ -150,12 +150,12 @@ private:
 };
 
 /// Clear: no tetrahedron overlaps the one at a hull face next to that face, which proves `disjoint_tets` if the premises of (1) hold.
-InsideHull look_inside_hull(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles) {
+/// @param faces  numbers of the hull faces to look at.
+InsideHull look_inside_hull(const SuspectMesh& mesh, const std::vector<ConstraintTriangle>& triangles, const std::vector<std::uint32_t>& faces) {
     std::vector<HullFace> hull;
     std::vector<Box3> boxes;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        if (!triangles[i].on_hull) continue;
-        hull.emplace_back(mesh, triangles[i], static_cast<std::uint32_t>(i));
+    for (const std::uint32_t i : faces) {
+        hull.emplace_back(mesh, triangles[i], i);
         // Neighbours in the list are neighbours in space.
         const std::size_t n = hull.size();
         hull.back().plane = n > 1 && in_one_plane(mesh, triangles[hull[n - 2].triangle], triangles[i]) ? hull[n - 2].plane : static_cast<std::uint32_t>(n - 1);
@@ -239,12 +239,19 @@ bool overlap(const SuspectMesh& mesh, std::size_t tet, std::size_t other) {
     return true;
 }
 
-Claim claim_disjoint(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order) {
+Claim claim_disjoint(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintTriangle>& triangles, const HullProof& proof,
+                     bool faces_in_order) {
     ClaimBuilder claim("disjoint_tets", "No two tetrahedra overlap.");
     claim.checked(mesh.tet_count());
     if (faces_in_order) {
-        const InsideHull inside = look_inside_hull(mesh, triangles);
-        if (inside == InsideHull::clear || (inside == InsideHull::too_many && disjoint_as_delaunay(mesh, search))) return claim.decided();
+        const std::vector<std::uint32_t>& components = proof.components();
+        if (proof.embedded() && (components.size() == 1 || look_inside_hull(mesh, triangles, components) == InsideHull::clear))
+            return claim.decided();
+        std::vector<std::uint32_t> hull;
+        for (std::uint32_t i = 0; i < triangles.size(); ++i)
+            if (triangles[i].on_hull) hull.push_back(i);
+        const InsideHull inside = look_inside_hull(mesh, triangles, hull);
+        if (inside == InsideHull::clear || (inside == InsideHull::too_many && disjoint_as_delaunay(mesh, search.get()))) return claim.decided();
     }
     std::vector<std::uint32_t> at_hull;
     for (const ConstraintTriangle& t : triangles)
@@ -276,15 +283,15 @@ Claim claim_disjoint(const SuspectMesh& mesh, const BallSearch& search, const st
     return faces_in_order ? claim.decided() : claim.undecided("without sound faces only overlaps at the hull can be found");
 }
 
-Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool proven_by_faces) {
+Claim claim_delaunay(const SuspectMesh& mesh, VertexSearch& vertices, bool proven_by_faces) {
     const bool weighted = mesh.is_weighted();
     ClaimBuilder claim = weighted ? ClaimBuilder("weighted_delaunay", "No vertex is in conflict with the sphere orthogonal to a tetrahedron.")
                                   : ClaimBuilder("delaunay", "No vertex lies strictly inside the circumsphere of a tetrahedron.");
-    std::uint64_t positive = 0;
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) positive += mesh.positive(t);
+    const std::uint64_t positive = mesh.positive_count();
     claim.checked(positive);
     if (positive < mesh.tet_count()) claim.note(fmt::format("{} inverted or flat tetrahedra have no circumsphere to look at", mesh.tet_count() - positive));
     if (proven_by_faces) return claim.decided();
+    const BallSearch& search = vertices.get();
     look_in_ranges(mesh.workers(), mesh.tet_count(), kSmallGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
         for (std::size_t t = begin; t < end; ++t) {
             if (!mesh.positive(t)) continue;
@@ -315,12 +322,15 @@ struct Touched {
 
 }  // namespace
 
-GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles) {
+GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, VertexSearch& vertices, const std::vector<ConstraintTriangle>& triangles,
+                                       bool proven_by_hull) {
     const bool weighted = mesh.is_weighted();
     ClaimBuilder claim(weighted ? "weighted_gabriel_subfaces" : "gabriel_subfaces",
                        fmt::format("No vertex {} sphere {} a constraint triangle (on the hull, between regions, or listed).",
                                    weighted ? "is in conflict with the smallest" : "lies inside the equatorial", weighted ? "orthogonal to" : "of"));
     claim.checked(triangles.size());
+    if (proven_by_hull) return {claim.decided(), 0};
+    const BallSearch& search = vertices.get();
     std::vector<Touched> parts((triangles.size() + kSmallGrain - 1) / kSmallGrain);
     look_in_ranges(mesh.workers(), triangles.size(), kSmallGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
         Touched& touch = parts[begin / kSmallGrain];
@@ -357,12 +367,15 @@ GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch
     return {claim.decided(), touched_hull_faces};
 }
 
-Claim claim_gabriel_subsegments(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintSegment>& segments) {
+Claim claim_gabriel_subsegments(const SuspectMesh& mesh, VertexSearch& vertices, const std::vector<ConstraintSegment>& segments,
+                                bool proven_by_hull) {
     const bool weighted = mesh.is_weighted();
     ClaimBuilder claim(weighted ? "weighted_gabriel_subsegments" : "gabriel_subsegments",
                        fmt::format("No vertex {} sphere {} a constraint edge (where constraint triangles bend or meet, or listed).",
                                    weighted ? "is in conflict with the smallest" : "lies inside the diametral", weighted ? "orthogonal to" : "of"));
     claim.checked(segments.size());
+    if (proven_by_hull) return claim.decided();
+    const BallSearch& search = vertices.get();
     std::vector<std::uint64_t> parts((segments.size() + kSmallGrain - 1) / kSmallGrain, 0);
     look_in_ranges(mesh.workers(), segments.size(), kSmallGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
         for (std::size_t i = begin; i < end; ++i) {

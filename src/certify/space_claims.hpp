@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Claims about how tetrahedra and vertices lie in space: no overlaps, Delaunay, Gabriel.
 //
+// Mostly hull_proof.hpp proves all of them. Where it does not, (1) and (2) ask for less, and what they don't prove is searched for.
+//
 // Why looking at faces can be enough. Let every tetrahedron be positive, no face have more than two, and two at a face lie on opposite
 // sides of it.
 //
@@ -35,22 +37,39 @@
 //     its height is 0 and both powers are equal: excluded again.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "certify/ball_search.hpp"
+#include "certify/hull_proof.hpp"
 #include "certify/mesh_faces.hpp"
 #include "certify/suspect_mesh.hpp"
 
 namespace wellmesh::certifying {
 
-/// No two tetrahedra have a common interior point; exact, see (1).
+/// All vertices, to be searched: made when first asked for, as mostly there is nothing to search.
+class VertexSearch {
+public:
+    explicit VertexSearch(const SuspectMesh& mesh) : mesh_(mesh) {}
+    const BallSearch& get() {
+        if (!search_) search_.emplace(mesh_.points(), mesh_.weights(), mesh_.workers());
+        return *search_;
+    }
+
+private:
+    const SuspectMesh& mesh_;
+    std::optional<BallSearch> search_;
+};
+
+/// No two tetrahedra have a common interior point; exact, see (1) and hull_proof.hpp.
 /// @param faces_in_order  the premises of (1) hold: otherwise a clean search proves nothing.
-[[nodiscard]] Claim claim_disjoint(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles, bool faces_in_order);
+[[nodiscard]] Claim claim_disjoint(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintTriangle>& triangles,
+                                   const HullProof& proof, bool faces_in_order);
 
 /// No vertex strictly inside the circumsphere of a positive tetrahedron (or in conflict with its orthogonal sphere, with weights); exact
 /// and global. Counts tetrahedra with at least one.
 /// @param proven_by_faces  the premises of (2) hold.
-[[nodiscard]] Claim claim_delaunay(const SuspectMesh& mesh, const BallSearch& search, bool proven_by_faces);
+[[nodiscard]] Claim claim_delaunay(const SuspectMesh& mesh, VertexSearch& search, bool proven_by_faces);
 
 /// A vertex inside by less than this fraction of the squared radius is not counted as encroaching, only mentioned: input vertices that
 /// are cocircular but for the rounding of their coordinates are beyond the reach of any mesh. The referee's margin.
@@ -60,8 +79,11 @@ struct GabrielFindings {
     Claim claim;
     std::uint64_t touched_hull_faces = 0;  ///< with a vertex strictly inside, however little
 };
-[[nodiscard]] GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintTriangle>& triangles);
-[[nodiscard]] Claim claim_gabriel_subsegments(const SuspectMesh& mesh, const BallSearch& search, const std::vector<ConstraintSegment>& segments);
+/// @param proven_by_hull  the premises of hull_proof.hpp hold, so that there is none.
+[[nodiscard]] GabrielFindings claim_gabriel_subfaces(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintTriangle>& triangles,
+                                                     bool proven_by_hull);
+[[nodiscard]] Claim claim_gabriel_subsegments(const SuspectMesh& mesh, VertexSearch& search, const std::vector<ConstraintSegment>& segments,
+                                              bool proven_by_hull);
 
 /// Exact: do the tetrahedra, neither of them flat, have a common interior point?
 [[nodiscard]] bool overlap(const SuspectMesh& mesh, std::size_t tet, std::size_t other);

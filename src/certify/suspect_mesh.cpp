@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "core/vec3_math.hpp"
@@ -34,12 +35,18 @@ SuspectMesh::SuspectMesh(const TetMesh& mesh, unsigned threads) : mesh_(mesh), w
     if (!points().empty()) predicates_ = PredicateFilter(high - low, weight_extent);
     positive_.resize(mesh.tets.size());
     static_assert(kGrain % 1024 == 0, "ranges share no word of positive_");
-    workers_.for_ranges(mesh.tets.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<std::size_t> counts((mesh.tets.size() + kGrain - 1) / kGrain, 0);
+    workers_.for_ranges(mesh.tets.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        std::size_t count = 0;
         for (std::size_t t = begin; t < end; ++t) {
             const auto& v = mesh.tets[t];
-            positive_[t] = predicates_.orient3d(point(v[0]), point(v[1]), point(v[2]), point(v[3])) == Sign::positive;
+            const bool positive = predicates_.orient3d(point(v[0]), point(v[1]), point(v[2]), point(v[3])) == Sign::positive;
+            positive_[t] = positive;
+            count += positive;
         }
+        counts[piece] = count;
     });
+    positive_count_ = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 
 Sign SuspectMesh::in_sphere(std::size_t tet, std::uint32_t vertex) const {

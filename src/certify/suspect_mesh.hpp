@@ -58,6 +58,7 @@ public:
     [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
     [[nodiscard]] const PredicateFilter& predicates() const { return predicates_; }
     [[nodiscard]] bool positive(std::size_t tet) const { return positive_[tet]; }
+    [[nodiscard]] std::size_t positive_count() const { return positive_count_; }
     /// Positive: the vertex is strictly inside the circumsphere of the positive tetrahedron or, with weights, in conflict with its orthogonal sphere.
     [[nodiscard]] Sign in_sphere(std::size_t tet, std::uint32_t vertex) const;
     [[nodiscard]] std::int32_t region(std::size_t tet) const { return mesh_.tet_regions.empty() ? 0 : mesh_.tet_regions[tet]; }
@@ -76,6 +77,7 @@ private:
     std::vector<double> weights_;
     PredicateFilter predicates_;
     std::vector<bool> positive_;
+    std::size_t positive_count_ = 0;
     double largest_coordinate_ = 0;
 };
 

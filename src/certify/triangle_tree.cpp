@@ -57,15 +57,44 @@ double Box3::squared_distance_to(const Vec3& p) const {
 }
 
 BoxTree::BoxTree(const std::vector<Box3>& boxes) {
+    Workers alone;
+    *this = BoxTree(boxes, alone);
+}
+
+BoxTree::BoxTree(const std::vector<Box3>& boxes, Workers& workers) {
     leaves_.reserve(boxes.size());
     for (const Box3& b : boxes) leaves_.push_back({b, static_cast<std::uint32_t>(leaves_.size())});
     std::size_t nodes = 1;
     for (std::size_t n = leaves_.size(); n > kLeaf; n = n - n / 2) nodes = 2 * nodes + 1;
     nodes_.resize(nodes);
-    if (!leaves_.empty()) build(0, 0, leaves_.size());
+    if (leaves_.empty()) return;
+    // Level by level to where there are enough nodes for all threads, then each of these to its leaves.
+    struct Node {
+        std::size_t node, begin, end;
+    };
+    std::vector<Node> level{{0, 0, leaves_.size()}};
+    for (int depth = 0; depth < 6 && level.front().end - level.front().begin > 64 * kLeaf; ++depth) {
+        workers.for_each(level.size(), [&](std::size_t i) { split(level[i].node, level[i].begin, level[i].end); });
+        std::vector<Node> next;
+        for (const auto& [node, begin, end] : level) {
+            const std::size_t middle = begin + (end - begin) / 2;
+            next.push_back({2 * node + 1, begin, middle});
+            next.push_back({2 * node + 2, middle, end});
+        }
+        level = std::move(next);
+    }
+    workers.for_each(level.size(), [&](std::size_t i) { build(level[i].node, level[i].begin, level[i].end); });
 }
 
 void BoxTree::build(std::size_t node, std::size_t begin, std::size_t end) {
+    split(node, begin, end);
+    if (end - begin <= kLeaf) return;
+    const std::size_t middle = begin + (end - begin) / 2;
+    build(2 * node + 1, begin, middle);
+    build(2 * node + 2, middle, end);
+}
+
+void BoxTree::split(std::size_t node, std::size_t begin, std::size_t end) {
     Box3& box = nodes_[node];
     box = leaves_[begin].box;
     for (std::size_t i = begin + 1; i < end; ++i) box.grow(leaves_[i].box);
@@ -79,8 +108,6 @@ void BoxTree::build(std::size_t node, std::size_t begin, std::size_t end) {
         const double a = key(l), b = key(m);
         return a != b ? a < b : l.number < m.number;
     });
-    build(2 * node + 1, begin, middle);
-    build(2 * node + 2, middle, end);
 }
 
 double squared_distance(const Vec3& p, const Corners& triangle) {
@@ -99,7 +126,12 @@ double squared_distance(const Vec3& p, const Corners& triangle) {
     return std::min({squared_distance_to_edge(a, b), squared_distance_to_edge(b, c), squared_distance_to_edge(c, a)});
 }
 
-TriangleTree::TriangleTree(std::vector<Corners> triangles) : triangles_(std::move(triangles)) {
+TriangleTree::TriangleTree(std::vector<Corners> triangles) {
+    Workers alone;
+    *this = TriangleTree(std::move(triangles), alone);
+}
+
+TriangleTree::TriangleTree(std::vector<Corners> triangles, Workers& workers) : triangles_(std::move(triangles)) {
     std::vector<Box3> boxes;
     boxes.reserve(triangles_.size());
     for (const Corners& t : triangles_) {
@@ -107,7 +139,7 @@ TriangleTree::TriangleTree(std::vector<Corners> triangles) : triangles_(std::mov
         if (boxes.size() == 1) box_ = boxes.back();
         box_.grow(boxes.back());
     }
-    tree_ = BoxTree(boxes);
+    tree_ = BoxTree(boxes, workers);
 }
 
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& p, std::uint32_t hint) const {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/workers.hpp"
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh::certifying {
@@ -27,6 +28,7 @@ class BoxTree {
 public:
     BoxTree() = default;
     explicit BoxTree(const std::vector<Box3>& boxes);
+    BoxTree(const std::vector<Box3>& boxes, Workers& workers);
     [[nodiscard]] bool empty() const { return leaves_.empty(); }
 
     /// Calls visit(number) for every box that meets `box`, until it returns true. @return whether it did.
@@ -51,6 +53,8 @@ private:
         Box3 box;
         std::uint32_t number;
     };
+    /// Of one node, not of those below.
+    void split(std::size_t node, std::size_t begin, std::size_t end);
     void build(std::size_t node, std::size_t begin, std::size_t end);
 
     template <class Admits, class Visit>
@@ -96,6 +100,7 @@ public:
 
     TriangleTree() = default;
     explicit TriangleTree(std::vector<Corners> triangles);
+    TriangleTree(std::vector<Corners> triangles, Workers& workers);
     [[nodiscard]] const std::vector<Corners>& triangles() const { return triangles_; }
 
     /// @param hint  a triangle that is likely to be near; saves time. @pre there is a triangle.

@@ -86,6 +86,41 @@ TEST(BallSearch, FindsEveryVertexInEquatorialAndDiametralBalls) {
     EXPECT_GT(inside_total, 10000U);
 }
 
+/// Points near a few balls, held against each of them: the same promise as that of a search.
+TEST(BallSearch, NeighbourhoodsMissNoVertex) {
+    std::uint64_t inside_total = 0, listed = 0, visited_total = 0;
+    for (const auto& points : point_sets()) {
+        const BallSearch search(points);
+        BallSearch::Neighbourhood near;
+        for (std::uint64_t key = 0; key < 200; ++key) {
+            std::vector<std::array<Vec3, 3>> triangles;
+            std::vector<Ball> balls;
+            for (std::uint64_t k = 0; balls.size() < 4 && k < 100; ++k) {
+                std::array<Vec3, 3> t;
+                for (std::uint64_t c = 0; c < 3; ++c) t[c] = points[mix64(mix64(key, k), c) % points.size()];
+                if (!(squared_norm(cross(t[1] - t[0], t[2] - t[0])) > 0)) continue;
+                triangles.push_back(t);
+                balls.push_back(search.equatorial_ball({t[0]}, {t[1]}, {t[2]}));
+            }
+            if (!search.list_near(balls, near)) continue;
+            ++listed;
+            for (std::size_t i = 0; i < balls.size(); ++i) {
+                std::set<std::uint32_t> visited;
+                near.any_in(balls[i], [&](std::uint32_t q) { return visited.insert(q), false; });
+                visited_total += visited.size();
+                for (std::uint32_t q = 0; q < points.size(); ++q) {
+                    if (side_of_equatorial_sphere(triangles[i][0], triangles[i][1], triangles[i][2], points[q]) == Sign::negative) continue;
+                    ++inside_total;  // on the sphere, too
+                    ASSERT_TRUE(visited.contains(q)) << key;
+                }
+            }
+        }
+    }
+    EXPECT_GT(listed, 500U);
+    EXPECT_GT(inside_total, 10000U);
+    EXPECT_LT(visited_total, 2 * inside_total) << "nothing is told apart";
+}
+
 /// With weights up to the square of the points' spread, or far below it, or negative: nothing in conflict is pruned, and depth has its sign.
 TEST(BallSearch, FindsEveryVertexInConflict) {
     std::uint64_t in_conflict = 0, visits = 0, cases = 0;

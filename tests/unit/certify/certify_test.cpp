@@ -8,7 +8,6 @@
 #include <string>
 
 #include "brute_force.hpp"
-#include "certify/ball_search.hpp"
 #include "certify/space_claims.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
@@ -290,7 +289,7 @@ TEST(Delaunay, ProofByFacesAgreesWithTheSearch) {
             mesh.vertices[v] = mesh.vertices[v] + size * Vec3{unit_double(mix64(key, v)) - 0.5, unit_double(mix64(key, v + 100)) - 0.5, unit_double(mix64(key, v + 200)) - 0.5};
         }
         const certifying::SuspectMesh suspect(mesh);
-        const certifying::BallSearch search(suspect.points());
+        certifying::VertexSearch search(suspect);
         const Claim by_search = certifying::claim_delaunay(suspect, search, false);
         const Claim claim = *certify(mesh).find("delaunay");
         EXPECT_EQ(claim.violations, by_search.violations);

@@ -41,7 +41,7 @@ TEST(MeasureEdges, CountsEachEdgeOnceInEachClass) {
     }
     std::array<ShapeStatistics, 3> s;
     const SuspectMesh suspect(mesh);
-    measure_edges(suspect, TetsByCorner(suspect), classes, s[0], s[1], s[2]);
+    measure_edges(suspect, TetsByCorner(suspect), classes).store(s[0], s[1], s[2]);
     for (std::size_t k = 0; k < 3; ++k) {
         double low = 1e300, high = 0, sum = 0;
         for (const auto& [a, b] : edges[k]) {
