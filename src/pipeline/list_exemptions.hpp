@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
+#include "core/workers.hpp"
 #include "refinement/refine.hpp"
 #include "wellmesh/exemption.hpp"
 #include "wellmesh/options.hpp"
@@ -18,7 +19,7 @@ namespace wellmesh {
 /// excused.
 /// @param first_number  of vertices in the source's own counting.
 [[nodiscard]] std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
-                                                     std::uint32_t first_number);
+                                                     std::uint32_t first_number, Workers& workers);
 
 /// The exemptions of a mesh whose tetrahedra are about to change. Those that come out of it as they were stay exempt, under their new number; new ones
 /// never are.

@@ -56,8 +56,8 @@ std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<Latti
 
 /// Seeds deep inside first, on all workers: whether they are clear of the boundary does not depend on what else is there. Then the others, in their order.
 bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
-    // Limits on vertices, and balls about acute vertices that give way, depend on the order.
-    const bool in_bulk = !boundary_.acute().any() && !guard_.has_too_many(mesh_.vertex_count() + seeds.size());
+    // A limit on vertices depends on the order.
+    const bool in_bulk = !guard_.has_too_many(mesh_.vertex_count() + seeds.size());
     if (in_bulk && !insert_deep(seeds)) return false;
     TetId near{};
     for (Seed& s : seeds) {
@@ -70,11 +70,13 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
     return true;
 }
 
-/// Which seeds are farther from every face than any may be that is not clear of it.
+/// Which seeds are farther from every face than any may be that is not clear of it, and in no ball about an acute vertex: balls give way one by one.
 std::vector<char> LatticeSeeder::find_deep(std::span<const Seed> seeds) const {
     std::vector<Box> boxes;
     for (const Face& f : list_faces()) boxes.push_back({f.box[0], f.box[1]});
     const BoxTree tree(boxes);
+    const std::vector<Box> balls = boundary_.acute().boxes_of_balls();
+    const BoxTree ball_tree(balls);
     double largest = 0;
     for (const double r : radius_)
         if (r < kInfinity) largest = std::max(largest, r);
@@ -87,6 +89,7 @@ std::vector<char> LatticeSeeder::find_deep(std::span<const Seed> seeds) const {
             const double reach = 1.01 * kClearance * radius;
             bool near = false;
             tree.query([&](const Box& b) { return !near && b.distance_to(seeds[k].point) <= reach; }, [&](std::uint32_t) { near = true; });
+            ball_tree.query([&](const Box& b) { return !near && b.distance_to(seeds[k].point) <= 0; }, [&](std::uint32_t) { near = true; });
             is_deep[k] = !near;
         }
     });

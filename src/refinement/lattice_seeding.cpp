@@ -25,6 +25,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastUse = 0.82;
 /// Ratios of spacings modulo 2 are told apart to a part of 2^(1/64) - 1, one per cent.
 constexpr std::size_t kPhases = 64;
+constexpr std::size_t kGrain = std::size_t{1} << 14;
 
 }  // namespace
 
@@ -93,9 +94,29 @@ bool LatticeSeeder::list_too_large(TetId t, double coarseness, std::vector<Subse
     return segments.size() + faces.size() > before;
 }
 
+/// The same of all tetrahedra; `which` gets those that have any.
+void LatticeSeeder::list_all_too_large(double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const {
+    struct Found {
+        std::vector<TetId> which;
+        std::vector<Subsegment> segments;
+        std::vector<Subface> faces;
+    };
+    const std::size_t slots = mesh_.tets().slots();
+    std::vector<Found> found((slots + kGrain - 1) / kGrain);
+    workers_.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        Found& here = found[piece];
+        for (std::size_t i = begin; i < end; ++i)
+            if (list_too_large(TetId{i}, coarseness, here.segments, here.faces)) here.which.emplace_back(i);
+    });
+    for (const Found& f : found) {
+        which.insert(which.end(), f.which.begin(), f.which.end());
+        segments.insert(segments.end(), f.segments.begin(), f.segments.end());
+        faces.insert(faces.end(), f.faces.begin(), f.faces.end());
+    }
+}
+
 /// Circumspheres of tetrahedra at a subsegment or subface are at least as large as its own: splitting it is never in vain.
 bool LatticeSeeder::split_boundary(double coarseness) {
-    const TetStore& tets = mesh_.tets();
     // To be looked at in the next round: what was too large, and what is new.
     std::vector<TetId> waiting;
     const auto note_new = [&](VertexId) {
@@ -115,15 +136,13 @@ bool LatticeSeeder::split_boundary(double coarseness) {
         segments.clear();
         faces.clear();
         std::vector<TetId> looked_at = std::exchange(waiting, {});
-        const auto look_at = [&](TetId t) {
-            if (list_too_large(t, coarseness, segments, faces)) waiting.push_back(t);
-        };
         if (looks_at_all) {
-            for (std::size_t i = 0; i < tets.slots(); ++i) look_at(TetId{i});
+            list_all_too_large(coarseness, waiting, segments, faces);
         } else {
             std::sort(looked_at.begin(), looked_at.end());
             looked_at.erase(std::unique(looked_at.begin(), looked_at.end()), looked_at.end());
-            for (const TetId t : looked_at) look_at(t);
+            for (const TetId t : looked_at)
+                if (list_too_large(t, coarseness, segments, faces)) waiting.push_back(t);
         }
         for (const Subsegment& s : segments) {
             if (!may_go_on(segments.size())) break;
@@ -145,11 +164,8 @@ bool LatticeSeeder::split_boundary(double coarseness) {
 
 std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
     const TetStore& tets = mesh_.tets();
-    std::vector<Face> out;
-    for (std::size_t i = 0; i < tets.slots(); ++i) {
-        const TetId t{i};
-        if (!mesh_.has_labels(t) || !tets.is_finite(t)) continue;
-        if (!mesh_.in_domain(t)) continue;
+    const auto list = [&](TetId t, std::vector<Face>& out) {
+        if (!mesh_.has_labels(t) || !tets.is_finite(t) || !mesh_.in_domain(t)) return;
         for (unsigned f = 0; f < 4; ++f) {
             if (!mesh_.labels(t).facets[f].valid()) continue;
             const auto fc = tets.face_corners(TetFace{t, f});
@@ -160,7 +176,14 @@ std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
                             Vec3{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}},
                            spacing});
         }
-    }
+    };
+    const std::size_t slots = tets.slots();
+    std::vector<std::vector<Face>> found((slots + kGrain - 1) / kGrain);
+    workers_.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) list(TetId{i}, found[piece]);
+    });
+    std::vector<Face> out;
+    for (const std::vector<Face>& piece : found) out.insert(out.end(), piece.begin(), piece.end());
     return out;
 }
 

@@ -44,6 +44,7 @@ private:
 
     /// Down to `coarseness` times the bound. @return false if the guard said stop.
     bool split_boundary(double coarseness);
+    void list_all_too_large(double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     bool list_too_large(TetId t, double coarseness, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     [[nodiscard]] bool may_go_on(std::uint64_t waiting) { return guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting) == RunGuard::Verdict::go_on; }
     [[nodiscard]] std::vector<LatticePoint> find_lattice(double base);

@@ -14,6 +14,7 @@
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
+#include "core/workers.hpp"
 #include "refinement/bad_tet_queue.hpp"
 #include "refinement/sliver_rule.hpp"
 #include "sizing/size_field.hpp"
@@ -28,7 +29,8 @@ struct RefineStatistics {
 
 class Refiner {
 public:
-    Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options);
+    /// @param workers  who shares in the work; none: the calling thread alone. What comes of it is the same.
+    Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options, Workers* workers = nullptr);
 
     /// Splits until no tetrahedron of the domain violates its size or the radius-edge bound.
     /// @return what stopped it; the mesh conforms in any case.
@@ -81,6 +83,7 @@ private:
     RunGuard::Verdict drain();
     void keep_last();
     void enqueue(const std::vector<TetId>& tets);
+    void enqueue(TetId t, Fault fault, double badness);
     void enqueue_all();
     void listen();
     void process(TetId t, InsertionReason reason);
@@ -108,6 +111,8 @@ private:
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
+    Workers alone_;
+    Workers& workers_;
     AcuteExemptions exemptions_;
     std::optional<ConformingMesh> last_;  // of refine(), with fewer vertices than the user allows
     std::uint64_t left_at_last_ = 0;      // vertices that were left then, or that were there if the user allows any number
