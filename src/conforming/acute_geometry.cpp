@@ -106,6 +106,10 @@ double AcuteGeometry::ball_radius(VertexId v) {
     return r;
 }
 
+void AcuteGeometry::find_balls() {
+    for (std::size_t v = 0; v < acute_deg_.size(); ++v) (void)ball_radius(VertexId{v});
+}
+
 std::vector<Box> AcuteGeometry::boxes_of_balls() {
     std::vector<Box> out;
     for (std::size_t v = 0; v < acute_deg_.size(); ++v) {

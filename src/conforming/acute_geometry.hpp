@@ -39,6 +39,8 @@ public:
 
     /// Boxes about all balls, empty ones left out.
     [[nodiscard]] std::vector<Box> boxes_of_balls();
+    /// Finds all radii, so that several threads may ask for them.
+    void find_balls();
 
     /// Half of it, where a size is asked for that is finer than the ball.
     void halve_ball(VertexId v) { ball_[v.index()] /= 2; }

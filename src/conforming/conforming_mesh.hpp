@@ -182,14 +182,23 @@ public:
     void undo_removal(VertexId v, const Placement& where, const Snapshot& before, std::span<const TetId> filling = {});
 
     // --- zones, for several workers at once (delaunay/zones.hpp)
-    /// Views of zones, in which vertices move, and no more. Until they are joined the whole must not be touched.
-    [[nodiscard]] std::vector<ConformingMesh> split(Workers& workers, const Zones& zones, ZoneViews& parts);
+    /// What each zone may have more of; for moves, which change numbers by little.
+    struct ZoneRoom {
+        std::size_t tets = 2048;  ///< and as many records of labels
+        std::size_t vertices = 0;
+    };
+    /// Views of zones, in which vertices move or are inserted. Until they are joined the whole must not be touched.
+    [[nodiscard]] std::vector<ConformingMesh> split(Workers& workers, const Zones& zones, const ZoneRoom& room, ZoneViews& parts);
     /// Takes over what the views changed, in their order.
     void join(std::vector<ConformingMesh>& views);
     /// Of a view: is there room to take out one vertex of a star of at most `most_tets` and put it elsewhere? If not, it has left its zone.
     [[nodiscard]] bool has_room_to_move(std::size_t most_tets) const {
         return tri_.has_room(2 * most_tets) && (!tri_.is_view() || free_records_.size() >= 2 * most_tets);
     }
+
+    /// Of a view: is there room for a vertex, and does it break nothing? If not, it has left its zone. The whole mesh takes any. @pre cavity is the last one
+    /// found; the next change is its insertion. The stars of a carrier segment's ends are in the zone.
+    [[nodiscard]] bool may_insert(const Cavity& cavity, const Placement& where);
 
     /// Facets and segments that lost a piece since the last call.
     [[nodiscard]] std::vector<FacetId> take_broken_facets();
@@ -229,10 +238,12 @@ private:
     void restore(const Snapshot& snapshot);
     void plan(const Cavity& cavity, const Placement& where);
     bool note_destroyed(const Placement& where);
+    [[nodiscard]] bool breaks_something(const Placement& where) const;
     [[nodiscard]] std::vector<TetFace> labelled_faces(FacetId f);
     TetLabels& labels_for_writing(TetId t);
     void drop_labels(TetId t);
     void fit_arrays();
+    void note_carrier(VertexId v);
     class InsideObserver;
     [[nodiscard]] bool is_segment_edge(VertexId a, VertexId b) const;
 
@@ -253,6 +264,9 @@ private:
     std::vector<TetId> forgotten_;
     std::vector<FacetId> broken_facets_;
     std::vector<SegmentId> broken_segments_;
+    std::vector<VertexId> spare_vertices_;  // of a view: for it to insert; of the whole: left over by views. The last one is taken first
+    std::vector<VertexId> added_;           // of a view: inserted
+    bool planned_ = false;                  // the next insertion
 
     // scratch of one insertion
     std::vector<CapturedFace> captured_;

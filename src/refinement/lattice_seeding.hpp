@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,9 @@ public:
     std::uint64_t seed();
 
 private:
+    /// For a view of a zone: splits its boundary.
+    LatticeSeeder(ConformingMesh& view, BoundaryRefiner& boundary, const LatticeSeeder& whole);
+
     struct Face {
         std::array<Vec3, 2> box{};
         double spacing = 0;  ///< the smaller one of the cells at its sides, at its middle
@@ -44,6 +48,11 @@ private:
 
     /// Down to `coarseness` times the bound. @return false if the guard said stop.
     bool split_boundary(double coarseness);
+    /// Most of the same, on all workers. @return false if the guard said stop.
+    bool split_boundary_in_zones(double coarseness);
+    void split_in_zone(double coarseness, std::vector<TetId> waiting, const std::function<bool(std::size_t)>& may_go_on);
+    class Listening;
+    void list_too_large(std::vector<TetId> of, double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     void list_all_too_large(double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     bool list_too_large(TetId t, double coarseness, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     [[nodiscard]] bool may_go_on(std::uint64_t waiting) { return guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting) == RunGuard::Verdict::go_on; }

@@ -30,7 +30,7 @@ SizeFieldDomain sampled_domain(const ConformingMesh& mesh, RunGuard& guard, cons
 }  // namespace
 
 Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options, Workers* workers)
-    : mesh_(mesh), boundary_(boundary), guard_(guard), workers_(workers ? *workers : alone_), exemptions_(mesh, boundary.acute()), sizes_(mesh.plc(), options.size, sampled_domain(mesh, guard, options.limits)),
+    : mesh_(mesh), boundary_(boundary), guard_(guard), workers_(workers ? *workers : alone_), exemptions_(mesh, boundary.acute()), shared_sizes_(std::make_shared<const SizeField>(mesh.plc(), options.size, sampled_domain(mesh, guard, options.limits))), sizes_(*shared_sizes_),
       max_radius_edge_(options.quality.max_radius_edge_ratio),
       max_vertices_(options.limits.max_vertices) {
     double largest = 0;
@@ -158,6 +158,7 @@ RunGuard::Verdict Refiner::refine() {
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     for (unsigned cascades = 0;; ++cascades) {
         try {
+            if (cascades == 0) drain_in_zones();
             verdict = drain();
             break;
         } catch (const MeshError& e) {
