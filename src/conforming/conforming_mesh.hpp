@@ -150,9 +150,10 @@ public:
     /// those that did not go in are not inserted, insert_known() may still do it. Ids of tetrahedra depend on the number of workers. Insertion lengths are not noted.
     /// @param points  in biased_spatial_order(), none of them a vertex's  @param is_welcome  may there be a vertex in this cell? From any thread.
     /// @param may_go_on  asked now and then, from any thread
-    /// @return the vertices that are not in
+    /// @param encroaching  gets the vertices that would encroach upon a subface or subsegment  @return the others that are not in
     std::vector<VertexId> insert_inside(Workers& workers, std::span<const Vec3> points, InsertionReason reason,
-                                        const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on);
+                                        const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on,
+                                        std::vector<VertexId>& encroaching);
     /// Inserts such a vertex. @param where  in a cell
     void insert_known(VertexId v, const Cavity& cavity, const Placement& where);
     /// Ids of tetrahedra that depend on the mesh alone; all ids from before are void. @pre nothing is broken or forgotten

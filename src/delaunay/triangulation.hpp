@@ -84,8 +84,8 @@ public:
     /// Is a vertex at p welcome, which this tetrahedron holds, or beyond this ghost's face? Asked before its cavity is known.
     virtual bool welcomes(const Vec3& p, TetId holder) = 0;
     enum class Answer : std::uint8_t { yes, never, not_now };
-    /// Called just before the point of the cavity becomes a vertex; it does not if the answer isn't yes.
-    virtual Answer prepare(const Cavity& cavity) = 0;
+    /// Called just before the point of the cavity becomes vertex v; it does not if the answer isn't yes.
+    virtual Answer prepare(VertexId v, const Cavity& cavity) = 0;
     /// ... and just after. Tetrahedron i stands on face i of the cavity's boundary.
     virtual void made(VertexId v, const std::vector<TetId>& tets) = 0;
     /// Asked now and then; once it has said no to one thread it says so to all.

@@ -202,10 +202,10 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
     // Each subsegment is listed by several tetrahedra, and each vertex makes two faces more: half a vertex per entry is measured at most. One takes seven
     // tetrahedra, or less. Who finds no room waits for the next turn.
     constexpr std::size_t kTetsPerVertex = 8, kMoreVertices = 64;
-    // Those that wait again and again are for the whole.
-    constexpr std::size_t kEntriesPerGain = 8;
+    // What waits twice lies where nearly all tetrahedra are cut: to try it once more takes longer than to split it.
+    constexpr unsigned kTurns = 2;
     boundary_.prepare_for_zones();
-    for (unsigned turn = 0; turn < Zones::kTurns && boundary_.may_work_in_zones() && !guard_.limits_vertices(); ++turn) {
+    for (unsigned turn = 0; turn < kTurns && boundary_.may_work_in_zones() && !guard_.limits_vertices(); ++turn) {
         std::vector<TetId> waiting;
         std::vector<Subsegment> segments;
         std::vector<Subface> faces;
@@ -215,7 +215,7 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
         std::vector<Vec3> sample;
         const std::size_t step = std::max<std::size_t>(1, waiting.size() / (kSampleAZone * count));
         for (std::size_t k = 0; k < waiting.size(); k += step) sample.push_back(mesh_.point(mesh_.tets().corner(waiting[k], 0)));
-        const std::size_t vertices = work / count + kMoreVertices, before = mesh_.vertex_count();
+        const std::size_t vertices = work / count + kMoreVertices;
         ZoneViews parts;
         std::vector<ConformingMesh> views = mesh_.split(workers_, Zones(std::move(sample), count, turn), {kTetsPerVertex * vertices, vertices}, parts);
         std::vector<std::vector<TetId>> shares(count);
@@ -229,7 +229,7 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
         });
         mesh_.join(views);
         for (const BoundaryRefiner& b : boundaries) boundary_.join(b);
-        if (guard.verdict() != RunGuard::Verdict::go_on || (mesh_.vertex_count() - before) * kEntriesPerGain < work) break;
+        if (guard.verdict() != RunGuard::Verdict::go_on) break;
     }
     boundary_.conform();
     return may_go_on(0);
@@ -281,7 +281,8 @@ std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
             const Vec3 &a = mesh_.point(fc[0]), &b = mesh_.point(fc[1]), &c = mesh_.point(fc[2]);
             const double spacing = spacing_at((1.0 / 3) * (a + b + c), mesh_.cell(t));
             if (spacing == kInfinity) continue;
-            out.push_back({{Vec3{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
+            out.push_back({{a, b, c},
+                           {Vec3{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
                             Vec3{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}},
                            spacing});
         }

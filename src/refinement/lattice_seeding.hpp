@@ -40,6 +40,7 @@ private:
     LatticeSeeder(ConformingMesh& view, BoundaryRefiner& boundary, const LatticeSeeder& whole);
 
     struct Face {
+        std::array<Vec3, 3> corners{};
         std::array<Vec3, 2> box{};
         double spacing = 0;  ///< the smaller one of the cells at its sides, at its middle
     };
@@ -65,8 +66,8 @@ private:
     };
     [[nodiscard]] std::vector<Seed> seeds_of(const std::vector<LatticePoint>& lattice);
     bool insert_seeds(std::span<Seed> seeds);
-    [[nodiscard]] std::vector<char> find_deep(std::span<const Seed> seeds) const;
-    bool insert_deep(std::span<Seed> seeds);
+    [[nodiscard]] std::vector<char> find_clear(std::span<Seed> seeds);
+    bool insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which);
     Outcome insert(const Vec3& p, TetId& near, VertexId known = {});
     [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double spacing_at(const Vec3& p, CellId c) const;
