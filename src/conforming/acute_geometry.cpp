@@ -106,6 +106,21 @@ double AcuteGeometry::ball_radius(VertexId v) {
     return r;
 }
 
+void AcuteGeometry::find_balls() {
+    for (std::size_t v = 0; v < acute_deg_.size(); ++v) (void)ball_radius(VertexId{v});
+}
+
+std::vector<Box> AcuteGeometry::boxes_of_balls() {
+    std::vector<Box> out;
+    for (std::size_t v = 0; v < acute_deg_.size(); ++v) {
+        const double r = ball_radius(VertexId{v});
+        if (!(r > 0)) continue;
+        const Vec3& p = point(VertexId{v});
+        out.push_back(Box{p, p}.grown(r));
+    }
+    return out;
+}
+
 bool AcuteGeometry::in_ball_of_segment(SegmentId s, const Vec3& p) {
     if (!any_) return false;
     const auto& ends = plc_->segments[s.index()].ends;

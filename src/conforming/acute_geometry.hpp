@@ -40,6 +40,11 @@ public:
     /// segment, else 0. Found when first asked for.
     [[nodiscard]] double ball_radius(VertexId v);
 
+    /// Boxes about all balls, empty ones left out.
+    [[nodiscard]] std::vector<Box> boxes_of_balls();
+    /// Finds all radii, so that several threads may ask for them.
+    void find_balls();
+
     /// Half of it, where a size is asked for that is finer than the ball.
     void halve_ball(VertexId v) { ball_[v.index()] /= 2; }
     /// All radii, as far as they are known, for an undo.

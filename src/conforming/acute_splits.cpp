@@ -76,8 +76,7 @@ VertexId BoundaryRefiner::ball_around(const Cavity& cavity) {
 bool BoundaryRefiner::makes_room(const Cavity& cavity, InsertionReason reason) {
     const bool for_size = reason == InsertionReason::size || reason == InsertionReason::boundary_by_size || reason == InsertionReason::lattice;
     for (VertexId v = ball_around(cavity); v.valid(); v = ball_around(cavity)) {
-        if (!for_size) return false;
-        acute_.halve_ball(v);
+        if (!for_size || !halve_ball(v)) return false;
     }
     return true;
 }
@@ -136,8 +135,7 @@ std::optional<BoundaryRefiner::AcutePlace> BoundaryRefiner::place_on_segment(con
     if (!request.for_conformity())
         for (const VertexId end : ends)
             while ((s.a == end || s.b == end) && length <= acute_.ball_radius(end) * (1 + 1e-9)) {
-                if (request.reason != InsertionReason::boundary_by_size) return std::nullopt;
-                acute_.halve_ball(end);
+                if (request.reason != InsertionReason::boundary_by_size || !halve_ball(end)) return std::nullopt;
             }
 
     std::optional<CarriedWitness> q = request.witness;
@@ -186,8 +184,9 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(const Subsegment& s, 
     VertexInfo info = place.info;
     info.reason = request.reason;
     info.parent = request.parent;
-    if (place.point == a || place.point == b || !tri.find_conflict_cavity(place.point, tri.tet_of(s.a), cavity_)) give_up(s);
+    if (place.point == a || place.point == b || !tri.find_conflict_cavity(place.point, tri.tet_of(s.a), cavity_)) return give_up(s);
     if (refuses(request, radius)) return SplitOutcome::refused;
+    if (!mesh_.may_insert(cavity_, Placement::on_segment(s))) return SplitOutcome::left_zone;
     const VertexId v = insert_on_segment(s, info);
     record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, true, 0.5 * (a + b), radius, s.a, s.b);
     return SplitOutcome::inserted;
@@ -351,7 +350,11 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std:
             const Vec3 centre = circumcentre(a, b, c, &radius);
             return !(squared_distance(cavity_.point, centre) < kSurelyInside * kSurelyInside * radius * radius);
         }();
-        if (!piece.segment.valid() && (!labelled || at_rim)) piece = first_crossed(f, middle, cavity_.point);
+        if (!piece.segment.valid() && (!labelled || at_rim)) {
+            tri.leave_zone();
+            if (tri.is_view()) return SplitOutcome::left_zone;  // it does not know all of the segment's vertices
+            piece = first_crossed(f, middle, cavity_.point);
+        }
         if (piece.segment.valid()) encroached_segments_.push_back(piece);
     }
     if (!encroached_segments_.empty()) {
@@ -370,6 +373,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_acute(FacetId f, const std:
         return SplitOutcome::deferred;
     }
     if (labelled && !mesh_.holds_carrier(cavity_, where) && !retreat()) return SplitOutcome::gone;
+    if (!mesh_.may_insert(cavity_, where)) return SplitOutcome::left_zone;
     VertexInfo info = place.info;
     info.reason = request.reason;
     info.parent = request.parent;

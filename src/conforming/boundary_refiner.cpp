@@ -180,6 +180,31 @@ double BoundaryRefiner::segment_length(SegmentId s) const {
 }
 
 BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const SplitRequest& request) {
+    const SplitOutcome outcome = split_here(s, request);
+    return mesh_.triangulation().left_zone() ? SplitOutcome::left_zone : outcome;
+}
+
+BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const SplitRequest& request) {
+    const SplitOutcome outcome = split_here(s, request);
+    return mesh_.triangulation().left_zone() ? SplitOutcome::left_zone : outcome;
+}
+
+/// In a view: labels of a subsegment are on the stars of its ends.
+bool BoundaryRefiner::has_both_stars(const Subsegment& s) {
+    Triangulation& tri = mesh_.triangulation();
+    return !tri.is_view() || (tri.find_star(s.a, star_) && tri.find_star(s.b, star_));
+}
+
+/// Balls give way in order, which views know nothing of. @return false: not here
+bool BoundaryRefiner::halve_ball(VertexId v) {
+    mesh_.triangulation().leave_zone();
+    if (mesh_.triangulation().is_view()) return false;
+    acute_.halve_ball(v);
+    return true;
+}
+
+BoundaryRefiner::SplitOutcome BoundaryRefiner::split_here(const Subsegment& s, const SplitRequest& request) {
+    if (!has_both_stars(s)) return SplitOutcome::left_zone;
     const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b);
     const std::uint64_t key = mix64(seed_, mix64(std::min(s.a, s.b).value(), std::max(s.a, s.b).value()));
     const Placement where = Placement::on_segment(s);
@@ -209,14 +234,17 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subsegment& s, const 
                 chosen = k;
                 sliver_free = true;
             }
-    if (distance(a, b) < kShortestPiece * segment_length(s.segment) || !found(chosen)) give_up(s);
+    if (distance(a, b) < kShortestPiece * segment_length(s.segment) || !found(chosen)) return give_up(s);
     if (refuses(request, radius)) return SplitOutcome::refused;
+    if (!mesh_.may_insert(cavity_, where)) return SplitOutcome::left_zone;
     const VertexId v = insert_on_segment(s, {.reason = request.reason, .parent = request.parent});
     record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, sliver_free, middle, radius, s.a, s.b);
     return SplitOutcome::inserted;
 }
 
-void BoundaryRefiner::give_up(const Subsegment& s) const {
+BoundaryRefiner::SplitOutcome BoundaryRefiner::give_up(const Subsegment& s) {
+    mesh_.triangulation().leave_zone();
+    if (mesh_.triangulation().is_view()) return SplitOutcome::left_zone;
     const Vec3 &a = mesh_.point(s.a), &b = mesh_.point(s.b), middle = 0.5 * (a + b);
     throw MeshError(ErrorCode::budget_exhausted, guard_.stage(),
                     fmt::format("segment {} can't be split any further: its pieces have shrunk to {} near ({}, {}, {})", s.segment.value() + 1, distance(a, b), middle.x,
@@ -241,7 +269,7 @@ VertexId BoundaryRefiner::insert_on_segment(const Subsegment& s, const VertexInf
     return v;
 }
 
-BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const SplitRequest& request) {
+BoundaryRefiner::SplitOutcome BoundaryRefiner::split_here(const Subface& s, const SplitRequest& request) {
     const TetFace face = mesh_.find_subface(s);
     if (!face.valid()) return SplitOutcome::gone;
     const Vec3 &a = mesh_.point(s.corners[0]), &b = mesh_.point(s.corners[1]), &c = mesh_.point(s.corners[2]);
@@ -257,7 +285,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
         if (request.for_conformity()) return split_acute(s.facet, s.corners, true, face.tet(), request);
         for (VertexId v = fan_apex(s.corners); v.valid(); v = fan_apex(s.corners)) {
             if (request.reason != InsertionReason::boundary_by_size) return SplitOutcome::refused;
-            acute_.halve_ball(v);
+            if (!halve_ball(v)) return SplitOutcome::left_zone;
         }
     }
     unsigned at_hand = kNoneYet;
@@ -304,6 +332,7 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split(const Subface& s, const Spl
         if (!tri.find_conflict_cavity(p, face.tet(), cavity_)) return SplitOutcome::gone;
     }
     if (refuses(request, radius) || !makes_room(cavity_, request.reason)) return SplitOutcome::refused;
+    if (!mesh_.may_insert(cavity_, where)) return SplitOutcome::left_zone;
     const VertexId v = mesh_.insert(cavity_, where, {.reason = request.reason, .parent = request.parent});
     inserted(v);
     record(request, v, mesh_.point(v), mesh_.info(v).insertion_length, sliver_free, centre, radius, s.corners[0], s.corners[1], s.corners[2]);

@@ -47,6 +47,8 @@ struct PickingRules {
     [[nodiscard]] double region(double radius) const { return std::min(delta * radius, reach); }
 };
 
+struct ZoneViews;
+
 class BoundaryRefiner {
 public:
     /// @param acute  where copies and balls are needed; it must know the mesh's own PLC.
@@ -74,7 +76,7 @@ public:
     void conform();
     /// Splits at most one subsegment or subface. @return false if none is waiting.
     bool step();
-    [[nodiscard]] bool idle() const { return segments_.empty() && faces_.empty() && !mesh_.has_broken() && !cells_stale_; }
+    [[nodiscard]] bool idle() const { return segments_.empty() && faces_.empty() && idle_but_for_queues(); }
     [[nodiscard]] std::size_t waiting() const { return segments_.size() + faces_.size(); }
     /// The mesh was put back to an earlier one that conformed: what waits is of the abandoned one.
     void forget_waiting() {
@@ -82,6 +84,17 @@ public:
         faces_.clear();
         cells_stale_ = false;
     }
+
+    // --- zones, for several workers at once (delaunay/zones.hpp)
+    /// For a view of a zone: takes over the rules, and of what waits what is all in the zone. Nothing judges candidates. @pre whole.prepare_for_zones()
+    BoundaryRefiner(ConformingMesh& view, BoundaryRefiner& whole, const ZoneViews& parts, std::uint8_t zone);
+    /// May zones share in the work? Not where somebody keeps account of the order.
+    [[nodiscard]] bool may_work_in_zones() const { return !recorder && !rules.strict && idle_but_for_queues(); }
+    /// Finds what is otherwise found when first asked for.
+    void prepare_for_zones() { acute_.find_balls(); }
+    /// As conform(), but what leaves the zone goes on waiting, for join(), and so does all when it may not go on.
+    void conform_in_zone(const std::function<bool(std::size_t)>& may_go_on);
+    void join(const BoundaryRefiner& zone);
 
     /// Looks for encroached subsegments and subfaces among the new tetrahedra.
     void enqueue_encroached(const std::vector<TetId>& tets);
@@ -92,7 +105,8 @@ public:
     /// Subsegments and subfaces that cavity.point would encroach, except on its own carrier.
     void find_encroached(const Cavity& cavity, const Placement& where, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
 
-    enum class SplitOutcome { inserted, deferred, gone, refused };
+    /// In a view of a zone anything may also leave it: nothing has changed then, or a subsegment was split instead.
+    enum class SplitOutcome { inserted, deferred, gone, refused, left_zone };
     SplitOutcome split(const Subsegment& s, const SplitRequest& request);
     /// Deferred: a subsegment had to be split instead.
     SplitOutcome split(const Subface& s, const SplitRequest& request);
@@ -115,6 +129,12 @@ public:
 private:
     struct WaitingSegment { Subsegment s; VertexId encroacher; };
     struct WaitingFace { Subface s; VertexId encroacher; };
+
+    [[nodiscard]] bool idle_but_for_queues() const { return !mesh_.has_broken() && !cells_stale_; }
+    SplitOutcome split_here(const Subsegment& s, const SplitRequest& request);
+    SplitOutcome split_here(const Subface& s, const SplitRequest& request);
+    bool halve_ball(VertexId v);
+    [[nodiscard]] bool has_both_stars(const Subsegment& s);
 
     template <class OnEdge, class OnFace>
     void visit_encroached(TetId t, OnEdge&& on_edge, OnFace&& on_face) const;
@@ -160,7 +180,8 @@ private:
     [[nodiscard]] Subsegment touched_outline(FacetId f, const Vec3& inside) const;
     [[nodiscard]] Subsegment first_crossed(FacetId f, const Vec3& p, const Vec3& q);
     VertexId insert_on_segment(const Subsegment& s, const VertexInfo& info);
-    [[noreturn]] void give_up(const Subsegment& s) const;
+    /// Throws; but a view leaves that to the whole.
+    SplitOutcome give_up(const Subsegment& s);
     [[noreturn]] void give_up(const Subface& s) const;
     SplitOutcome split_acute(const Subsegment& s, const AcutePlace& place, const SplitRequest& request);
     /// Without copies the place is the circumcentre.
@@ -172,6 +193,9 @@ private:
     AcuteGeometry& acute_;
     std::deque<WaitingSegment> segments_;
     std::deque<WaitingFace> faces_;
+    std::vector<WaitingSegment> left_segments_;  // of a view: left the zone
+    std::vector<WaitingFace> left_faces_;
+    std::vector<TetId> star_;
     Cavity cavity_;
     std::vector<Subsegment> encroached_segments_;
     std::vector<Subface> encroached_faces_;

@@ -150,9 +150,10 @@ public:
     /// those that did not go in are not inserted, insert_known() may still do it. Ids of tetrahedra depend on the number of workers. Insertion lengths are not noted.
     /// @param points  in biased_spatial_order(), none of them a vertex's  @param is_welcome  may there be a vertex in this cell? From any thread.
     /// @param may_go_on  asked now and then, from any thread
-    /// @return the vertices that are not in
+    /// @param encroaching  gets the vertices that would encroach upon a subface or subsegment  @return the others that are not in
     std::vector<VertexId> insert_inside(Workers& workers, std::span<const Vec3> points, InsertionReason reason,
-                                        const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on);
+                                        const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on,
+                                        std::vector<VertexId>& encroaching);
     /// Inserts such a vertex. @param where  in a cell
     void insert_known(VertexId v, const Cavity& cavity, const Placement& where);
     /// Ids of tetrahedra that depend on the mesh alone; all ids from before are void. @pre nothing is broken or forgotten
@@ -182,14 +183,23 @@ public:
     void undo_removal(VertexId v, const Placement& where, const Snapshot& before, std::span<const TetId> filling = {});
 
     // --- zones, for several workers at once (delaunay/zones.hpp)
-    /// Views of zones, in which vertices move, and no more. Until they are joined the whole must not be touched.
-    [[nodiscard]] std::vector<ConformingMesh> split(Workers& workers, const Zones& zones, ZoneViews& parts);
+    /// What each zone may have more of; for moves, which change numbers by little.
+    struct ZoneRoom {
+        std::size_t tets = 2048;  ///< and as many records of labels
+        std::size_t vertices = 0;
+    };
+    /// Views of zones, in which vertices move or are inserted. Until they are joined the whole must not be touched.
+    [[nodiscard]] std::vector<ConformingMesh> split(Workers& workers, const Zones& zones, const ZoneRoom& room, ZoneViews& parts);
     /// Takes over what the views changed, in their order.
     void join(std::vector<ConformingMesh>& views);
     /// Of a view: is there room to take out one vertex of a star of at most `most_tets` and put it elsewhere? If not, it has left its zone.
     [[nodiscard]] bool has_room_to_move(std::size_t most_tets) const {
         return tri_.has_room(2 * most_tets) && (!tri_.is_view() || free_records_.size() >= 2 * most_tets);
     }
+
+    /// Of a view: is there room for a vertex, and does it break nothing? If not, it has left its zone. The whole mesh takes any. @pre cavity is the last one
+    /// found; the next change is its insertion. The stars of a carrier segment's ends are in the zone.
+    [[nodiscard]] bool may_insert(const Cavity& cavity, const Placement& where);
 
     /// Facets and segments that lost a piece since the last call.
     [[nodiscard]] std::vector<FacetId> take_broken_facets();
@@ -233,10 +243,12 @@ private:
     void restore(const Snapshot& snapshot);
     void plan(const Cavity& cavity, const Placement& where);
     bool note_destroyed(const Placement& where);
+    [[nodiscard]] bool breaks_something(const Placement& where) const;
     [[nodiscard]] std::vector<TetFace> labelled_faces(FacetId f);
     TetLabels& labels_for_writing(TetId t);
     void drop_labels(TetId t);
     void fit_arrays();
+    void note_carrier(VertexId v);
     class InsideObserver;
     [[nodiscard]] bool is_segment_edge(VertexId a, VertexId b) const;
 
@@ -258,6 +270,9 @@ private:
     std::vector<FacetId> broken_facets_;  // other than by lost_
     std::vector<Subface> lost_;
     std::vector<SegmentId> broken_segments_;
+    std::vector<VertexId> spare_vertices_;  // of a view: for it to insert; of the whole: left over by views. The last one is taken first
+    std::vector<VertexId> added_;           // of a view: inserted
+    bool planned_ = false;                  // the next insertion
 
     // scratch of one insertion
     std::vector<CapturedFace> captured_;

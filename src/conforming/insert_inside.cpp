@@ -36,20 +36,27 @@ public:
     }
     BulkObserver& for_zone(std::size_t zone) override { return parts_[zone]; }
     void join() override {
-        for (const InsideObserver& part : parts_) mesh_.free_records_.insert(mesh_.free_records_.end(), part.records_.begin(), part.records_.end());
+        for (const InsideObserver& part : parts_) {
+            mesh_.free_records_.insert(mesh_.free_records_.end(), part.records_.begin(), part.records_.end());
+            encroaching_.insert(encroaching_.end(), part.encroaching_.begin(), part.encroaching_.end());
+        }
         parts_.clear();
     }
 
     bool welcomes(const Vec3& p, TetId holder) override {
         return !mesh_.tets().is_ghost(holder) && mesh_.in_domain(holder) && is_welcome_(p, mesh_.cell(holder));
     }
-    Answer prepare(const Cavity& cavity) override {
+    Answer prepare(VertexId v, const Cavity& cavity) override {
         std::size_t dropped = 0;
         for (const TetId t : cavity.tets) {
             if (!mesh_.has_labels(t)) continue;
             ++dropped;
-            if (mesh_.is_encroached_at(t, cavity.point)) return Answer::never;
+            if (mesh_.is_encroached_at(t, cavity.point)) {
+                encroaching_.push_back(v);
+                return Answer::never;
+            }
         }
+        if (dropped > 1 && deletes_subface(cavity)) return Answer::never;
         if (is_part_ && records_.size() + dropped < cavity.boundary.size()) return Answer::not_now;
         captured_.clear();
         cell_ = mesh_.cell(cavity.tets[0]);
@@ -85,10 +92,21 @@ public:
         }
     }
     bool may_go_on() override { return may_go_on_(); }
+    [[nodiscard]] std::vector<VertexId>& encroaching() { return encroaching_; }
 
 private:
     static constexpr std::size_t kSpareRecords = 1024;
 
+    /// One that the point does not encroach upon, beside flat tetrahedra.
+    [[nodiscard]] bool deletes_subface(const Cavity& cavity) const {
+        for (const TetId t : cavity.tets)
+            for (unsigned f = 0; f < 4; ++f) {
+                if (!mesh_.facet_at(TetFace{t, f}).valid()) continue;
+                const auto is_it = [&](const BoundaryFace& b) { return b.inside == TetFace{t, f}; };
+                if (std::none_of(cavity.boundary.begin(), cavity.boundary.end(), is_it)) return true;
+            }
+        return false;
+    }
     std::vector<std::uint32_t>& pool() { return is_part_ ? records_ : mesh_.free_records_; }
     void put(TetId t, const TetLabels& labels) {
         if (pool().empty()) {  // of the whole: a part's were counted
@@ -107,6 +125,7 @@ private:
     std::vector<std::uint32_t> records_;
     std::vector<CapturedFace> captured_;  // none: no tetrahedron of the cavity has labels
     CellId cell_{};                       // of its first one
+    std::vector<VertexId> encroaching_;   // vertices that were not to be
     std::vector<InsideObserver> parts_;
 };
 
@@ -125,7 +144,8 @@ bool ConformingMesh::is_encroached_at(TetId t, const Vec3& p) const {
 }
 
 std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<const Vec3> points, InsertionReason reason,
-                                                    const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on) {
+                                                    const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on,
+                                                    std::vector<VertexId>& encroaching) {
     const std::size_t first = tri_.vertex_count();
     tri_.reserve(first + points.size());
     info_.reserve(first + points.size() + points.size() / 8);
@@ -137,7 +157,11 @@ std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<
     std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(first));
     InsideObserver observer(*this, is_welcome, may_go_on);
     std::vector<VertexId> left;
-    for (const std::uint32_t v : tri_.insert_on(workers, order, &observer)) left.push_back(VertexId{v});
+    const std::vector<std::uint32_t> refused = tri_.insert_on(workers, order, &observer);
+    encroaching = std::move(observer.encroaching());
+    std::sort(encroaching.begin(), encroaching.end());
+    for (const std::uint32_t v : refused)
+        if (!std::binary_search(encroaching.begin(), encroaching.end(), VertexId{v})) left.push_back(VertexId{v});
     for (std::size_t v = first; v < info_.size(); ++v) vertex_count_ += tri_.is_inserted(VertexId{v});
     return left;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "conforming/conforming_mesh.hpp"
 #include "core/check.hpp"
@@ -177,6 +178,15 @@ bool ConformingMesh::note_destroyed(const Placement& where) {
     return leaks || broken_facets_.size() != before;
 }
 
+/// The same, of the insertion that was planned, without noting it.
+bool ConformingMesh::breaks_something(const Placement& where) const {
+    const auto is_lost = [](const InteriorFace& f) { return !f.used && f.boundary == InteriorFace::kNotOnBoundary; };
+    const auto is_cut = [&](const Subsegment& s) { return where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b); };
+    const auto is_open = [&](const LoopEdge& e) { return std::find(rim_.begin(), rim_.end(), edge_key(e.a, e.b)) == rim_.end(); };
+    return std::any_of(interior_.begin(), interior_.end(), is_lost) || std::any_of(interior_segments_.begin(), interior_segments_.end(), is_cut) ||
+           std::any_of(loop_.begin(), loop_.end(), is_open);
+}
+
 /// Reads everything that the insertion needs to know about the cavity, and finds how the surface will run.
 void ConformingMesh::plan(const Cavity& cavity, const Placement& where) {
     capture(cavity, captured_);
@@ -221,7 +231,7 @@ void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& w
         commit_inside(v, cavity);
         return;
     }
-    plan(cavity, where);
+    if (!std::exchange(planned_, false)) plan(cavity, where);
     const bool leaks = note_destroyed(where);
     const bool splits = where.carrier == CarrierKind::segment;
     for (const TetId t : cavity.tets) drop_labels(t);
@@ -261,21 +271,36 @@ void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& w
     if (splits) label_edge(where.a, where.b, SegmentId{});  // it may have survived on the hull, an ulp away from the new vertex
 }
 
+void ConformingMesh::note_carrier(VertexId v) {
+    const VertexInfo& own = info(v);
+    if (own.carrier == CarrierKind::facet) on_facet_[own.carrier_id].push_back(v);
+    if (own.carrier == CarrierKind::segment) on_segment_[own.carrier_id].push_back(v);
+}
+
 VertexId ConformingMesh::insert(const Cavity& cavity, const Placement& where, const VertexInfo& vertex_info) {
-    const VertexId v = tri_.add_point(cavity.point);
-    info_.push_back(vertex_info);
-    info_.back().carrier = where.carrier;
-    info_.back().carrier_id = where.carrier_id;
+    VertexId v{};
+    if (tri_.is_view()) {
+        v = spare_vertices_.back();
+        spare_vertices_.pop_back();
+        added_.push_back(v);
+        tri_.set_point(v, cavity.point);
+    } else {
+        v = tri_.add_point(cavity.point);
+        info_.push_back({});
+    }
+    VertexInfo& own = info_[v.index()];
+    own = vertex_info;
+    own.carrier = where.carrier;
+    own.carrier_id = where.carrier_id;
     ++vertex_count_;
-    if (where.carrier == CarrierKind::facet) on_facet_[where.carrier_id].push_back(v);
-    if (where.carrier == CarrierKind::segment) on_segment_[where.carrier_id].push_back(v);
+    if (!tri_.is_view()) note_carrier(v);
     commit(v, cavity, where);
     // e_v: the star is at hand.
     double shortest = std::numeric_limits<double>::infinity();
     for (const TetId t : tri_.new_tets())
         for (const VertexId w : tri_.tets().corners(t))
             if (w != v && w != kInfiniteVertex) shortest = std::min(shortest, squared_distance(cavity.point, point(w)));
-    info_.back().insertion_length = std::sqrt(shortest);
+    own.insertion_length = std::sqrt(shortest);
     return v;
 }
 

@@ -8,21 +8,28 @@
 #include "delaunay/zones.hpp"
 
 namespace wellmesh {
-namespace {
 
-/// Tetrahedra and records of labels that each zone may have more of: vertices that move change their number by little.
-constexpr std::size_t kSpare = 2048;
-
-}  // namespace
-
-std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones& zones, ZoneViews& parts) {
-    tri_.split(workers, zones, kSpare, parts);
+std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones& zones, const ZoneRoom& room, ZoneViews& parts) {
+    if (const std::size_t wanted = room.vertices * zones.count(); spare_vertices_.size() < wanted) {
+        // The first zone takes from the end: the smallest ids are for it.
+        std::vector<VertexId> more;
+        while (more.size() + spare_vertices_.size() < wanted) {
+            more.push_back(tri_.add_point(Vec3{}));
+            info_.push_back({});
+        }
+        spare_vertices_.insert(spare_vertices_.begin(), more.rbegin(), more.rend());
+    }
+    tri_.split(workers, zones, room.tets, parts);
     fit_arrays();
-    const std::size_t share = kSpare * zones.count();
+    const std::size_t share = room.tets * zones.count();
     while (free_records_.size() < share) {
         free_records_.push_back(static_cast<std::uint32_t>(records_.size()));
         records_.push_back(TetLabels{});
     }
+    const auto take = [](auto& from, std::size_t count, auto& to) {
+        to.assign(from.end() - static_cast<std::ptrdiff_t>(count), from.end());
+        from.resize(from.size() - count);
+    };
     std::vector<ConformingMesh> views;
     views.reserve(zones.count());
     for (std::size_t z = 0; z < zones.count(); ++z) {
@@ -34,19 +41,37 @@ std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones&
         view.cell_ = cell_.view();
         view.record_ = record_.view();
         view.records_ = records_.view();
-        view.free_records_.assign(free_records_.end() - static_cast<std::ptrdiff_t>(kSpare), free_records_.end());
-        free_records_.resize(free_records_.size() - kSpare);
+        take(free_records_, room.tets, view.free_records_);
+        take(spare_vertices_, room.vertices, view.spare_vertices_);
         view.filled_ = filled_;
     }
     return views;
 }
 
 void ConformingMesh::join(std::vector<ConformingMesh>& views) {
+    const std::size_t before = vertex_count_;
     for (ConformingMesh& view : views) {
-        WELLMESH_CHECK(Stage::shape, view.vertex_count_ == vertex_count_ && !view.has_broken() && view.forgotten_.empty());
+        WELLMESH_CHECK(Stage::shape, view.vertex_count_ == before + view.added_.size() && !view.has_broken() && view.forgotten_.empty());
         tri_.join(view.tri_);
         free_records_.insert(free_records_.end(), view.free_records_.begin(), view.free_records_.end());
+        vertex_count_ += view.added_.size();
+        for (const VertexId v : view.added_) note_carrier(v);
     }
+    for (std::size_t z = views.size(); z-- > 0;) spare_vertices_.insert(spare_vertices_.end(), views[z].spare_vertices_.begin(), views[z].spare_vertices_.end());
+}
+
+bool ConformingMesh::may_insert(const Cavity& cavity, const Placement& where) {
+    planned_ = false;
+    if (!tri_.is_view()) return true;
+    if (tri_.left_zone()) return false;
+    const std::size_t made = cavity.boundary.size();
+    bool may = !spare_vertices_.empty() && tri_.has_room(made) && free_records_.size() >= made;
+    if (may && std::any_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId t) { return has_labels(t) || cell_[t.index()] != cell_[cavity.tets[0].index()]; })) {
+        plan(cavity, where);
+        planned_ = may = !breaks_something(where);
+    }
+    if (!may || cell_[cavity.tets[0].index()] == unknown_cell()) tri_.leave_zone();
+    return !tri_.left_zone();
 }
 
 }  // namespace wellmesh

@@ -57,6 +57,8 @@ public:
     void set_ceiling(std::optional<std::uint64_t> vertices) { ceiling_ = vertices; }
     /// Whether a limit that the user set, not the algorithm's own bound, has ended the run.
     [[nodiscard]] bool user_limit_spent() const { return spent_ != Verdict::go_on; }
+    /// Has the user set a limit on vertices? Then who comes first matters.
+    [[nodiscard]] bool limits_vertices() const { return limits_.max_vertices.has_value(); }
     /// More vertices than the user allows: what a cascade must finish may add some after the last of them.
     [[nodiscard]] bool has_too_many(std::uint64_t vertices) const { return limits_.max_vertices && vertices > *limits_.max_vertices; }
     /// Whether there is memory for another copy of all that the process holds: copies that are kept only to fall back on are left out otherwise.

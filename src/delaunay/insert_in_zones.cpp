@@ -134,7 +134,7 @@ void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId s
             left.push_back(i);
             continue;
         }
-        const auto answer = observer ? observer->prepare(cavity) : BulkObserver::Answer::yes;
+        const auto answer = observer ? observer->prepare(v, cavity) : BulkObserver::Answer::yes;
         if (answer != BulkObserver::Answer::yes) {
             (answer == BulkObserver::Answer::never ? refused : left).push_back(i);
             continue;
@@ -168,7 +168,7 @@ std::vector<std::uint32_t> Triangulation::insert_one_by_one(std::span<const std:
             duplicates_.push_back({v, cavity.duplicate});
             continue;
         }
-        if (observer && observer->prepare(cavity) != BulkObserver::Answer::yes) {
+        if (observer && observer->prepare(v, cavity) != BulkObserver::Answer::yes) {
             left.push_back(order[k]);
             continue;
         }

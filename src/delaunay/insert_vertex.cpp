@@ -188,7 +188,7 @@ public:
     BulkObserver& for_zone(std::size_t) override { return *this; }
     void join() override {}
     bool welcomes(const Vec3&, TetId) override { return true; }
-    Answer prepare(const Cavity&) override { return Answer::yes; }
+    Answer prepare(VertexId, const Cavity&) override { return Answer::yes; }
     void made(VertexId, const std::vector<TetId>&) override {}
     bool may_go_on() override {
         pass(checkpoint_);

@@ -7,7 +7,7 @@
 namespace wellmesh {
 
 TetId Triangulation::locate(const Vec3& p, TetId hint) const {
-    if (is_view()) return walk<true>(p, hint);
+    if (is_view()) return may_enter<true>(hint) ? walk<true>(p, hint) : TetId{};
     TetId t = hint;
     if (!t.valid() || t.index() >= tets_.slots() || !tets_.is_live(t)) t = last_located_;
     if (!t.valid() || t.index() >= tets_.slots() || !tets_.is_live(t)) {

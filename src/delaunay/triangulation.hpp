@@ -84,8 +84,8 @@ public:
     /// Is a vertex at p welcome, which this tetrahedron holds, or beyond this ghost's face? Asked before its cavity is known.
     virtual bool welcomes(const Vec3& p, TetId holder) = 0;
     enum class Answer : std::uint8_t { yes, never, not_now };
-    /// Called just before the point of the cavity becomes a vertex; it does not if the answer isn't yes.
-    virtual Answer prepare(const Cavity& cavity) = 0;
+    /// Called just before the point of the cavity becomes vertex v; it does not if the answer isn't yes.
+    virtual Answer prepare(VertexId v, const Cavity& cavity) = 0;
     /// ... and just after. Tetrahedron i stands on face i of the cavity's boundary.
     virtual void made(VertexId v, const std::vector<TetId>& tets) = 0;
     /// Asked now and then; once it has said no to one thread it says so to all.
@@ -163,13 +163,15 @@ public:
     std::vector<std::uint32_t> insert_on(Workers& workers, std::span<const std::uint32_t> order, BulkObserver* observer = nullptr);
     // --- zones (zones.hpp)
     /// Makes a view of each zone, with `spare` tetrahedra to grow by. Until each is joined the whole must not be touched, and views only insert and remove vertices
-    /// that are stored already.
+    /// that are stored already, and set the points of those that were put aside for them.
     void split(Workers& workers, const Zones& zones, std::size_t spare, ZoneViews& out);
     void join(const Triangulation& view);
     [[nodiscard]] bool is_view() const { return zone_of_tet_ != nullptr; }
     /// Of a view: has anything failed since forget_leaving() because it would have left the zone, or found no room? On the whole mesh nothing does.
     [[nodiscard]] bool left_zone() const { return left_zone_; }
     void forget_leaving() { left_zone_ = false; }
+    /// For what a view can't do for other reasons.
+    void leave_zone() { left_zone_ = is_view(); }
     /// Can there be so many tetrahedra more? Only views are limited.
     [[nodiscard]] bool has_room(std::size_t more) const {
         if (is_view() && tets_.room() < more) left_zone_ = true;

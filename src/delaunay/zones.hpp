@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -22,6 +24,14 @@ class Zones {
 public:
     static constexpr std::size_t kMost = 128;
 
+    /// Into how many zones so much work is worth being cut, of which each is to have `least`; 0: into none. Less in later turns, as more zones have more limits.
+    static std::size_t worth(std::size_t tets, std::size_t work, std::size_t least, unsigned turn) {
+        if (work < tets / kTetsPerWork) return 0;
+        const std::size_t most = std::bit_floor(std::min({work / least, static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(tets) / kTetsOfTwo)), kMost}));
+        return most < 2 ? 0 : std::max<std::size_t>(2, most >> turn);
+    }
+    static constexpr unsigned kTurns = 4;
+
     /// @param count  a power of two, at most kMost
     Zones(std::vector<Vec3> sample, std::size_t count, unsigned turn) : count_(count), nodes_(count), frame_(kFrames[turn % kFrames.size()]) {
         for (Vec3& p : sample) p = turned(p);
@@ -37,6 +47,11 @@ public:
     }
 
 private:
+    /// So many tetrahedra are worth two zones, four times as many worth four, and so on: small zones are mostly limits.
+    static constexpr double kTetsOfTwo = 1 << 15;
+    /// Cutting and joining costs some ten nanoseconds a tetrahedron, a move or a split some ten microseconds.
+    static constexpr std::size_t kTetsPerWork = 2048;
+
     struct Node {
         unsigned axis = 0;
         double limit = 0;

@@ -2,6 +2,7 @@
 #include "pipeline/extract_mesh.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,7 @@ namespace wellmesh {
 namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kGrain = std::size_t{1} << 15;
 
 struct ListedFace {
     std::array<std::uint32_t, 3> corners{};
@@ -46,12 +48,23 @@ void list_constraints(const ConformingMesh& mesh, TetId t, const std::vector<std
 /// the others along a space-filling curve, tetrahedra by their lowest vertex. So whoever walks through the mesh, a solver or the
 /// certificate, walks through memory.
 template <class InOutput>
-std::vector<TetId> number_output(const ConformingMesh& mesh, InOutput&& in_output, std::vector<std::uint32_t>& number, TetMesh& out) {
+std::vector<TetId> number_output(const ConformingMesh& mesh, Workers& workers, InOutput&& in_output, std::vector<std::uint32_t>& number, TetMesh& out) {
     const TetStore& tets = mesh.tets();
     const ValidPlc& plc = mesh.plc();
-    for (std::size_t i = 0; i < tets.slots(); ++i)
-        if (in_output(TetId{i}))
-            for (const VertexId v : tets.corners(TetId{i})) number[v.index()] = 0;
+    const bool alone = workers.threads() == 1;
+    const auto for_output = [&](auto&& use) {
+        workers.for_ranges(tets.slots(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (in_output(TetId{i})) use(TetId{i});
+        });
+    };
+    for_output([&](TetId t) {
+        for (const VertexId v : tets.corners(t)) {
+            std::uint32_t& n = number[v.index()];
+            if (alone) n = 0;
+            else std::atomic_ref(n).store(0, std::memory_order_relaxed);
+        }
+    });
     std::vector<VertexId> order, steiner;
     std::vector<Vec3> steiner_points;
     for (auto* list : {&order, &steiner}) list->reserve(number.size());
@@ -66,7 +79,7 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, InOutput&& in_outpu
             steiner_points.push_back(mesh.point(v));
         }
     }
-    for (const std::uint32_t i : spatial_order(steiner_points)) order.push_back(steiner[i]);
+    for (const std::uint32_t i : spatial_order(steiner_points, workers)) order.push_back(steiner[i]);
     out.vertices.reserve(order.size());
     out.vertex_carriers.reserve(order.size());
     for (const VertexId v : order) {
@@ -84,39 +97,55 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, InOutput&& in_outpu
         const auto& c = tets.corners(t);
         return std::min({number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]});
     };
+    const auto add_one = [alone](std::uint32_t& counter) { return alone ? counter++ : std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed); };
     std::vector<std::uint32_t> first(order.size() + 1, 0);
-    for (std::size_t i = 0; i < tets.slots(); ++i)
-        if (in_output(TetId{i})) ++first[lowest(TetId{i}) + 1];
+    for_output([&](TetId t) { add_one(first[lowest(t) + 1]); });
     for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
     std::vector<TetId> listed(first.back());
-    for (std::size_t i = 0; i < tets.slots(); ++i)
-        if (in_output(TetId{i})) listed[first[lowest(TetId{i})]++] = TetId{i};
+    for_output([&](TetId t) { listed[add_one(first[lowest(t)])] = t; });
+    // Each start has moved on to the next one's. Several threads dealt those of a vertex out as it happened.
+    if (!alone)
+        workers.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v)
+                std::sort(listed.begin() + (v == 0 ? 0 : first[v - 1]), listed.begin() + first[v]);
+        });
     return listed;
 }
 
 }  // namespace
 
-TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order) {
+TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order, Workers& workers) {
     TetMesh out;
     const TetStore& tets = mesh.tets();
     const ValidPlc& plc = mesh.plc();
     std::vector<std::uint32_t> number(mesh.vertex_slots(), kUnused);
     const auto in_output = [&](TetId t) { return tets.is_finite(t) && mesh.in_domain(t); };
-    order = number_output(mesh, in_output, number, out);
+    order = number_output(mesh, workers, in_output, number, out);
     return_freed_memory();
     const std::size_t count = order.size();
-    out.tets.reserve(count);
-    out.tet_regions.reserve(count);
+    out.tets.resize(count);
+    out.tet_regions.resize(count);
+    struct Listed {
+        std::vector<ListedFace> faces;
+        std::vector<ListedEdge> edges;
+    };
+    std::vector<Listed> listed((count + kGrain - 1) / kGrain);
+    constexpr std::size_t kAhead = 16;
+    workers.for_ranges(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + kAhead < count) tets.prefetch(order[i + kAhead]);
+            const TetId t = order[i];
+            const auto& c = tets.corners(t);
+            out.tets[i] = {number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]};
+            out.tet_regions[i] = plc.cells[mesh.cell(t).index()].region;
+            if (mesh.has_labels(t)) list_constraints(mesh, t, number, listed[piece].faces, listed[piece].edges);
+        }
+    });
     std::vector<ListedFace> faces;
     std::vector<ListedEdge> edges;
-    constexpr std::size_t kAhead = 16;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (i + kAhead < count) tets.prefetch(order[i + kAhead]);
-        const TetId t = order[i];
-        const auto& c = tets.corners(t);
-        out.tets.push_back({number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]});
-        out.tet_regions.push_back(plc.cells[mesh.cell(t).index()].region);
-        if (mesh.has_labels(t)) list_constraints(mesh, t, number, faces, edges);
+    for (const Listed& l : listed) {
+        faces.insert(faces.end(), l.faces.begin(), l.faces.end());
+        edges.insert(edges.end(), l.edges.begin(), l.edges.end());
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());

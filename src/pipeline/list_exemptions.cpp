@@ -28,25 +28,33 @@ std::array<std::uint32_t, 4> sorted(std::array<std::uint32_t, 4> corners) {
 }  // namespace
 
 std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
-                                       std::uint32_t first_number) {
+                                       std::uint32_t first_number, Workers& workers) {
     std::vector<Exemption> out;
     const ValidPlc& plc = mesh.plc();
     if (!refiner.may_excuse()) return out;
     const QualityGoals& goals = options.quality;
     const double angle = std::max(goals.min_dihedral_angle_deg, goals.min_dihedral_boundary_deg.value_or(0));
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const auto& c = mesh.tets().corners(order[i]);
-        const TetShape shape = shape_of(mesh.point(c[0]), mesh.point(c[1]), mesh.point(c[2]), mesh.point(c[3]));
-        if (shape.radius_edge <= goals.max_radius_edge_ratio && shape.min_dihedral_deg >= angle) continue;
-        const auto by = refiner.forced_by(order[i]);
-        if (!by) {
-            if (const auto sides = refiner.gaps().sides_joined_by(mesh, order[i])) out.push_back({i, feature_of(mesh, (*sides)[0], first_number), kGapAngle});
-            continue;
+    // Who forces them is found by searching the mesh: not by several threads at once. It matters to few.
+    constexpr std::size_t kGrain = std::size_t{1} << 13;
+    std::vector<std::vector<std::size_t>> missing((order.size() + kGrain - 1) / kGrain);
+    workers.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto& c = mesh.tets().corners(order[i]);
+            const TetShape shape = shape_of(mesh.point(c[0]), mesh.point(c[1]), mesh.point(c[2]), mesh.point(c[3]));
+            if (!(shape.radius_edge <= goals.max_radius_edge_ratio && shape.min_dihedral_deg >= angle)) missing[piece].push_back(i);
         }
-        const bool segment = by->kind == EntityKind::segment;
-        const Vec3 where = segment ? plc.vertices[plc.segments[by->id].ends[0].index()] : plc.vertices[by->id];
-        out.push_back({i, {by->kind, segment ? by->id + 1U : plc.source_vertex[by->id] + first_number, where}, by->angle_deg});
-    }
+    });
+    for (const std::vector<std::size_t>& piece : missing)
+        for (const std::size_t i : piece) {
+            const auto by = refiner.forced_by(order[i]);
+            if (!by) {
+                if (const auto sides = refiner.gaps().sides_joined_by(mesh, order[i])) out.push_back({i, feature_of(mesh, (*sides)[0], first_number), kGapAngle});
+                continue;
+            }
+            const bool segment = by->kind == EntityKind::segment;
+            const Vec3 where = segment ? plc.vertices[plc.segments[by->id].ends[0].index()] : plc.vertices[by->id];
+            out.push_back({i, {by->kind, segment ? by->id + 1U : plc.source_vertex[by->id] + first_number, where}, by->angle_deg});
+        }
     return out;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
+#include "core/workers.hpp"
 #include "refinement/refine.hpp"
 #include "wellmesh/exemption.hpp"
 #include "wellmesh/options.hpp"
@@ -20,7 +21,7 @@ namespace wellmesh {
 /// that miss one are not excused.
 /// @param first_number  of vertices in the source's own counting.
 [[nodiscard]] std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
-                                                     std::uint32_t first_number);
+                                                     std::uint32_t first_number, Workers& workers);
 
 /// Of the gaps that were left, if any, and how many of the exemptions lie in them.
 [[nodiscard]] std::optional<GapStatistics> gaps_left(const std::vector<Exemption>& exemptions, const ConformingMesh& mesh, const Refiner& refiner, std::uint32_t first_number);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
@@ -42,6 +43,17 @@ MeshOptions with_names_resolved(const MeshOptions& options, const Plc& plc) {
     MeshOptions out = options;
     out.size.entities = with_ids(options.size.entities, plc.names);
     return out;
+}
+
+std::uint64_t count_filled(const ConformingMesh& mesh, Workers& workers) {
+    constexpr std::size_t kGrain = std::size_t{1} << 15;
+    std::vector<std::uint64_t> counts((mesh.tets().slots() + kGrain - 1) / kGrain);
+    workers.for_ranges(mesh.tets().slots(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        std::uint64_t n = 0;
+        for (std::size_t i = begin; i < end; ++i) n += mesh.tets().is_finite(TetId{i}) && mesh.in_domain(TetId{i});
+        counts[piece] = n;
+    });
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
 class Generator {
@@ -95,7 +107,7 @@ private:
             if (!valid.acute_features.empty()) throw acute_failure(valid, e, guard_);  // the paper assumes that there are none
             throw;
         }
-        report_goals(result_, options_, valid, size_rows_);
+        report_goals(result_, options_, valid, size_rows_, workers_);
         result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
         return std::move(result_);
     }
@@ -188,8 +200,7 @@ private:
         const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);
         const auto count = [&] {
             vertices_ = mesh.vertex_count();
-            tets_ = 0;
-            for (std::size_t i = 0; i < mesh.tets().slots(); ++i) tets_ += mesh.tets().is_finite(TetId{i}) && mesh.in_domain(TetId{i});
+            tets_ = count_filled(mesh, workers_);
         };
         timed(Stage::conform, [&] {
             const std::size_t before = mesh.vertex_count();
@@ -201,7 +212,7 @@ private:
             guard_.set_conforming();
             if (given_) result_.statistics.given->added_for_conformity = mesh.vertex_count() - before;
         });
-        Refiner refiner(mesh, boundary, guard_, options_);
+        Refiner refiner(mesh, boundary, guard_, options_, &workers_);
         refuse_hopeless(options_.limits, refiner.sizes().expected_vertices());
         refiner.guard_edges();
         const bool certified = options_.mode == Mode::certified;
@@ -237,9 +248,9 @@ private:
         // The mesh will be there twice.
         mesh.triangulation().release_scratch();
         return_freed_memory();
-        result_.mesh = extract_mesh(mesh, order);
+        result_.mesh = extract_mesh(mesh, order, workers_);
         result_.mesh.names = plc_.names;
-        result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number);
+        result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number, workers_);
         result_.statistics.gaps = gaps_left(result_.exemptions, mesh, refiner, plc_.first_number);
         if (result_.statistics.gaps) result_.statistics.notes.push_back(describe(*result_.statistics.gaps));
         size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());

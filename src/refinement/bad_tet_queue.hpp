@@ -29,14 +29,32 @@ public:
     /// @param squared_badness  larger is worse; only its power of two counts.
     void push(TetId t, const TetStore::Corners& c, double squared_badness) {
         const int level = squared_badness < 1e300 ? std::clamp(std::ilogb(squared_badness) + kBias, 0, kLevels - 1) : kLevels - 1;
-        buckets_[static_cast<std::size_t>(level)].push_back({t, fingerprint(c)});
+        push({t, fingerprint(c)}, level);
+    }
+    void push(const Entry& e, int level) {
+        buckets_[static_cast<std::size_t>(level)].push_back(e);
         top_ = std::max(top_, level);
         ++size_;
     }
+    /// Calls take(entry, level) for all that wait; those for which it says yes are gone. What stays keeps its order.
+    template <class Take>
+    void deal(Take&& take) {
+        size_ = 0;
+        for (int level = 0; level <= top_; ++level) {
+            auto& bucket = buckets_[static_cast<std::size_t>(level)];
+            std::erase_if(bucket, [&](const Entry& e) { return take(e, level); });
+            size_ += bucket.size();
+        }
+    }
     [[nodiscard]] bool empty() const { return size_ == 0; }
     [[nodiscard]] std::size_t size() const { return size_; }
-    Entry pop() {
+    /// Of the entry that comes next. @pre !empty()
+    [[nodiscard]] int level() {
         while (buckets_[static_cast<std::size_t>(top_)].empty()) --top_;
+        return top_;
+    }
+    Entry pop() {
+        (void)level();
         auto& bucket = buckets_[static_cast<std::size_t>(top_)];
         const Entry e = bucket.back();
         bucket.pop_back();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the lattice's vertices get into the mesh: those deep inside in bulk, on all workers, those near the boundary one by one.
+// How the lattice's vertices get into the mesh: in bulk, on all workers, but for those in balls about acute vertices.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -54,14 +54,18 @@ std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<Latti
     return seeds;
 }
 
-/// Seeds deep inside first, on all workers: whether they are clear of the boundary does not depend on what else is there. Then the others, in their order.
+/// On all workers first: whether seeds are clear of the boundary, and encroach upon it, does not depend on what else is there. Then those in balls, in their order.
 bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
-    // Limits on vertices, and balls about acute vertices that give way, depend on the order.
-    const bool in_bulk = !boundary_.acute().any() && !guard_.has_too_many(mesh_.vertex_count() + seeds.size());
-    if (in_bulk && !insert_deep(seeds)) return false;
+    // A limit on vertices depends on the order.
+    std::vector<char> in_bulk(seeds.size(), 0);
+    if (!guard_.has_too_many(mesh_.vertex_count() + seeds.size())) {
+        in_bulk = find_clear(seeds);
+        if (!insert_in_bulk(seeds, in_bulk)) return false;
+    }
     TetId near{};
-    for (Seed& s : seeds) {
-        if (!s.waits) continue;
+    for (std::size_t k = 0; k < seeds.size(); ++k) {
+        Seed& s = seeds[k];
+        if (!s.waits || in_bulk[k] != 0) continue;
         if (!may_go_on(seeds.size())) return false;
         const Outcome outcome = insert(s.point, near);
         s.waits = outcome == Outcome::encroaches;  // finer boundaries are encroached by fewer
@@ -70,38 +74,51 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
     return true;
 }
 
-/// Which seeds are farther from every face than any may be that is not clear of it.
-std::vector<char> LatticeSeeder::find_deep(std::span<const Seed> seeds) const {
+/// Which seeds are in a cell that wants them, clear of the boundary, and in no ball about an acute vertex: balls give way one by one. Those that are not clear
+/// wait no longer.
+std::vector<char> LatticeSeeder::find_clear(std::span<Seed> seeds) {
+    const std::vector<Face> faces = list_faces();
     std::vector<Box> boxes;
-    for (const Face& f : list_faces()) boxes.push_back({f.box[0], f.box[1]});
+    boxes.reserve(faces.size());
+    for (const Face& f : faces) boxes.push_back({f.box[0], f.box[1]});
+    for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v)  // those of facets lie in them
+        if (mesh_.info(VertexId{v}).carrier == CarrierKind::segment || mesh_.info(VertexId{v}).carrier == CarrierKind::input_vertex) boxes.push_back({mesh_.point(VertexId{v}), mesh_.point(VertexId{v})});
     const BoxTree tree(boxes);
-    double largest = 0;
-    for (const double r : radius_)
-        if (r < kInfinity) largest = std::max(largest, r);
-    std::vector<char> is_deep(seeds.size(), 0);
+    const std::vector<Box> balls = boundary_.acute().boxes_of_balls();
+    const BoxTree ball_tree(balls);
+    const Triangulation& tri = mesh_.triangulation();
+    std::vector<char> is_clear(seeds.size(), 0);
     workers_.for_ranges(seeds.size(), 1 << 10, [&](std::size_t begin, std::size_t end, std::size_t) {
+        TetId near{};
         for (std::size_t k = begin; k < end; ++k) {
             if (!seeds[k].waits) continue;
-            // Leaves are at least half as large as they may be.
-            const double radius = sizes_.varies() || largest == 0 ? 2 * seeds[k].spacing * kLatticeCircumradius / kLatticeScale : largest;
-            const double reach = 1.01 * kClearance * radius;
-            bool near = false;
-            tree.query([&](const Box& b) { return !near && b.distance_to(seeds[k].point) <= reach; }, [&](std::uint32_t) { near = true; });
-            is_deep[k] = !near;
+            const Vec3& p = seeds[k].point;
+            near = tri.locate(p, near);
+            const bool inside = mesh_.tets().is_finite(near) && mesh_.in_domain(near);
+            const double radius = inside ? radius_at(p, mesh_.cell(near)) : kInfinity;
+            seeds[k].waits = radius < kInfinity;
+            if (!seeds[k].waits) continue;
+            const double reach = kClearance * radius;
+            tree.query([&](const Box& b) { return seeds[k].waits && b.distance_to(p) < reach; },
+                       [&](std::uint32_t i) {
+                           if (i >= faces.size() || squared_distance_to_triangle(p, faces[i].corners[0], faces[i].corners[1], faces[i].corners[2]) < reach * reach) seeds[k].waits = false;
+                       });
+            bool in_ball = false;
+            ball_tree.query([&](const Box& b) { return !in_ball && b.distance_to(p) <= 0; }, [&](std::uint32_t) { in_ball = true; });
+            is_clear[k] = seeds[k].waits && !in_ball;
         }
     });
-    return is_deep;
+    return is_clear;
 }
 
-bool LatticeSeeder::insert_deep(std::span<Seed> seeds) {
-    const std::vector<char> is_deep = find_deep(seeds);
+bool LatticeSeeder::insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which) {
     std::vector<Vec3> points;
     std::vector<std::uint32_t> numbers;
-    const auto deep = static_cast<std::size_t>(std::count(is_deep.begin(), is_deep.end(), 1));
-    points.reserve(deep);
-    numbers.reserve(deep);
+    const auto count = static_cast<std::size_t>(std::count(which.begin(), which.end(), 1));
+    points.reserve(count);
+    numbers.reserve(count);
     for (std::size_t k = 0; k < seeds.size(); ++k)
-        if (is_deep[k] != 0) {
+        if (which[k] != 0) {
             points.push_back(seeds[k].point);
             numbers.push_back(static_cast<std::uint32_t>(k));
         }
@@ -113,9 +130,11 @@ bool LatticeSeeder::insert_deep(std::span<Seed> seeds) {
     };
     const auto is_welcome = [this](const Vec3& p, CellId c) { return radius_at(p, c) < kInfinity; };
     const std::size_t first = mesh_.vertex_slots(), before = mesh_.vertex_count();
-    const std::vector<VertexId> left = mesh_.insert_inside(workers_, points, InsertionReason::lattice, is_welcome, goes_on);
+    std::vector<VertexId> encroaching;
+    const std::vector<VertexId> left = mesh_.insert_inside(workers_, points, InsertionReason::lattice, is_welcome, goes_on, encroaching);
     inserted_ += mesh_.vertex_count() - before;
     for (const std::uint32_t k : numbers) seeds[k].waits = false;
+    for (const VertexId v : encroaching) seeds[numbers[v.index() - first]].waits = true;
     TetId near{};
     for (const VertexId v : left) {
         if (stopped || !may_go_on(points.size())) return false;

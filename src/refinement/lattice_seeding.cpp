@@ -5,13 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <unordered_set>
 #include <utility>
 
 #include "conforming/place_point.hpp"
+#include "core/rng.hpp"
+#include "core/shared_guard.hpp"
 #include "core/vec3_math.hpp"
+#include "delaunay/zones.hpp"
 
 namespace wellmesh {
 namespace {
@@ -25,8 +30,29 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastUse = 0.82;
 /// Ratios of spacings modulo 2 are told apart to a part of 2^(1/64) - 1, one per cent.
 constexpr std::size_t kPhases = 64;
+constexpr std::size_t kGrain = std::size_t{1} << 14;
 
 }  // namespace
+
+/// Lists what is to be looked at in the next round, besides what was too large: what is new.
+class LatticeSeeder::Listening {
+public:
+    Listening(const ConformingMesh& mesh, BoundaryRefiner& boundary, std::vector<TetId>& waiting)
+        : hook_(boundary.on_insert), before_(std::exchange(hook_, [&](VertexId) {
+              for (const TetId t : mesh.triangulation().new_tets())
+                  if (mesh.has_labels(t)) waiting.push_back(t);
+          })) {}
+    ~Listening() { hook_.swap(before_); }
+    Listening(const Listening&) = delete;
+    Listening& operator=(const Listening&) = delete;
+
+private:
+    std::function<void(VertexId)>& hook_;
+    std::function<void(VertexId)> before_;
+};
+
+LatticeSeeder::LatticeSeeder(ConformingMesh& view, BoundaryRefiner& boundary, const LatticeSeeder& whole)
+    : mesh_(view), boundary_(boundary), guard_(whole.guard_), sizes_(whole.sizes_), workers_(whole.workers_), radius_(whole.radius_), spacing_(whole.spacing_), is_thin_(whole.is_thin_) {}
 
 LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes, Workers& workers)
     : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(sizes), workers_(workers), radius_(mesh.plc().cells.size(), kInfinity), spacing_(radius_.size(), kInfinity), is_thin_(radius_.size(), 0) {
@@ -93,20 +119,127 @@ bool LatticeSeeder::list_too_large(TetId t, double coarseness, std::vector<Subse
     return segments.size() + faces.size() > before;
 }
 
+/// The same of some; `which` gets those that have any.
+void LatticeSeeder::list_too_large(std::vector<TetId> of, double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const {
+    std::sort(of.begin(), of.end());
+    of.erase(std::unique(of.begin(), of.end()), of.end());
+    for (const TetId t : of)
+        if (list_too_large(t, coarseness, segments, faces)) which.push_back(t);
+}
+
+/// The same of all tetrahedra; `which` gets those that have any.
+void LatticeSeeder::list_all_too_large(double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const {
+    struct Found {
+        std::vector<TetId> which;
+        std::vector<Subsegment> segments;
+        std::vector<Subface> faces;
+    };
+    const std::size_t slots = mesh_.tets().slots();
+    std::vector<Found> found((slots + kGrain - 1) / kGrain);
+    workers_.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        Found& here = found[piece];
+        for (std::size_t i = begin; i < end; ++i)
+            if (list_too_large(TetId{i}, coarseness, here.segments, here.faces)) here.which.emplace_back(i);
+    });
+    for (const Found& f : found) {
+        which.insert(which.end(), f.which.begin(), f.which.end());
+        segments.insert(segments.end(), f.segments.begin(), f.segments.end());
+        faces.insert(faces.end(), f.faces.begin(), f.faces.end());
+    }
+}
+
+/// What is too large and all of this zone's: outlines first, then facets, until nothing more can be split here.
+void LatticeSeeder::split_in_zone(double coarseness, std::vector<TetId> waiting, const std::function<bool(std::size_t)>& may_go_on) {
+    const Listening listening(mesh_, boundary_, waiting);
+    Triangulation& tri = mesh_.triangulation();
+    const SplitRequest request{InsertionReason::boundary_by_size, VertexId{}};
+    std::vector<Subsegment> segments;
+    std::vector<Subface> faces;
+    std::vector<TetId> with_faces;
+    std::unordered_set<std::uint64_t> left;  // what left the zone is not tried again; each is looked up, in no order
+    const auto may_try = [&](std::uint64_t key) {
+        tri.forget_leaving();
+        return !left.contains(key);
+    };
+    boundary_.conform_in_zone(may_go_on);
+    for (const bool outlines_are_done : {false, true}) {
+        if (outlines_are_done) waiting = std::move(with_faces);
+        while (!waiting.empty()) {
+            std::vector<TetId> too_large;
+            segments.clear();
+            faces.clear();
+            list_too_large(std::exchange(waiting, {}), coarseness, too_large, segments, faces);
+            if (!outlines_are_done) with_faces.insert(with_faces.end(), too_large.begin(), too_large.end());
+            for (const Subsegment& s : segments) {
+                if (!may_go_on(segments.size())) return;
+                const std::uint64_t key = mix64(s.a.value(), s.b.value());
+                if (!may_try(key)) continue;
+                if (mesh_.find_subsegment(s).valid()) (void)boundary_.split(s, request);
+                if (tri.left_zone()) left.insert(key);
+            }
+            boundary_.conform_in_zone(may_go_on);
+            if (!outlines_are_done) continue;
+            for (const Subface& s : faces) {
+                if (!may_go_on(faces.size())) return;
+                std::array<VertexId, 3> c = s.corners;
+                std::sort(c.begin(), c.end());
+                const std::uint64_t key = mix64(c[0].value(), mix64(c[1].value(), c[2].value()));
+                if (!may_try(key)) continue;
+                const BoundaryRefiner::SplitOutcome outcome = boundary_.split(s, request);
+                if (tri.left_zone()) left.insert(key);
+                boundary_.conform_in_zone(may_go_on);
+                // A subsegment was split instead, so it waits, unless that took it away.
+                tri.forget_leaving();
+                if (outcome != BoundaryRefiner::SplitOutcome::deferred) continue;
+                if (const TetFace face = mesh_.find_subface(s); face.valid()) waiting.push_back(face.tet());
+            }
+        }
+    }
+}
+
+bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
+    constexpr std::size_t kLeastAZone = 256, kSampleAZone = 512;
+    // Each subsegment is listed by several tetrahedra, and each vertex makes two faces more: half a vertex per entry is measured at most. One takes seven
+    // tetrahedra, or less. Who finds no room waits for the next turn.
+    constexpr std::size_t kTetsPerVertex = 8, kMoreVertices = 64;
+    // What waits twice lies where nearly all tetrahedra are cut: to try it once more takes longer than to split it.
+    constexpr unsigned kTurns = 2;
+    boundary_.prepare_for_zones();
+    for (unsigned turn = 0; turn < kTurns && boundary_.may_work_in_zones() && !guard_.limits_vertices(); ++turn) {
+        std::vector<TetId> waiting;
+        std::vector<Subsegment> segments;
+        std::vector<Subface> faces;
+        list_all_too_large(coarseness, waiting, segments, faces);
+        const std::size_t work = segments.size() + faces.size(), count = Zones::worth(mesh_.tets().live(), work, kLeastAZone, turn);
+        if (count < 2) break;
+        std::vector<Vec3> sample;
+        const std::size_t step = std::max<std::size_t>(1, waiting.size() / (kSampleAZone * count));
+        for (std::size_t k = 0; k < waiting.size(); k += step) sample.push_back(mesh_.point(mesh_.tets().corner(waiting[k], 0)));
+        const std::size_t vertices = work / count + kMoreVertices;
+        ZoneViews parts;
+        std::vector<ConformingMesh> views = mesh_.split(workers_, Zones(std::move(sample), count, turn), {kTetsPerVertex * vertices, vertices}, parts);
+        std::vector<std::vector<TetId>> shares(count);
+        for (const TetId t : waiting)
+            if (const std::uint8_t zone = parts.zone_of_tet[t.index()]; zone != ZoneViews::kNone) shares[zone].push_back(t);
+        std::deque<BoundaryRefiner> boundaries;
+        for (std::size_t z = 0; z < count; ++z) boundaries.emplace_back(views[z], boundary_, parts, static_cast<std::uint8_t>(z));
+        SharedGuard guard(guard_, mesh_.vertex_count(), mesh_.tets().live());
+        workers_.for_each(count, [&](std::size_t z) {
+            guard.watch([&] { LatticeSeeder(views[z], boundaries[z], *this).split_in_zone(coarseness, std::move(shares[z]), [&](std::size_t left) { return guard.may_go_on(left); }); });
+        });
+        mesh_.join(views);
+        for (const BoundaryRefiner& b : boundaries) boundary_.join(b);
+        if (guard.verdict() != RunGuard::Verdict::go_on) break;
+    }
+    boundary_.conform();
+    return may_go_on(0);
+}
+
 /// Circumspheres of tetrahedra at a subsegment or subface are at least as large as its own: splitting it is never in vain.
 bool LatticeSeeder::split_boundary(double coarseness) {
-    const TetStore& tets = mesh_.tets();
-    // To be looked at in the next round: what was too large, and what is new.
+    if (!split_boundary_in_zones(coarseness)) return false;
     std::vector<TetId> waiting;
-    const auto note_new = [&](VertexId) {
-        for (const TetId t : mesh_.triangulation().new_tets())
-            if (mesh_.has_labels(t)) waiting.push_back(t);
-    };
-    struct Listening {
-        std::function<void(VertexId)>& hook;
-        std::function<void(VertexId)> before;
-        ~Listening() { hook.swap(before); }
-    } const listening{boundary_.on_insert, std::exchange(boundary_.on_insert, note_new)};
+    const Listening listening(mesh_, boundary_, waiting);
     std::vector<Subsegment> segments;
     std::vector<Subface> faces;
     const SplitRequest request{InsertionReason::boundary_by_size, VertexId{}};
@@ -115,15 +248,10 @@ bool LatticeSeeder::split_boundary(double coarseness) {
         segments.clear();
         faces.clear();
         std::vector<TetId> looked_at = std::exchange(waiting, {});
-        const auto look_at = [&](TetId t) {
-            if (list_too_large(t, coarseness, segments, faces)) waiting.push_back(t);
-        };
         if (looks_at_all) {
-            for (std::size_t i = 0; i < tets.slots(); ++i) look_at(TetId{i});
+            list_all_too_large(coarseness, waiting, segments, faces);
         } else {
-            std::sort(looked_at.begin(), looked_at.end());
-            looked_at.erase(std::unique(looked_at.begin(), looked_at.end()), looked_at.end());
-            for (const TetId t : looked_at) look_at(t);
+            list_too_large(std::move(looked_at), coarseness, waiting, segments, faces);
         }
         for (const Subsegment& s : segments) {
             if (!may_go_on(segments.size())) break;
@@ -145,22 +273,27 @@ bool LatticeSeeder::split_boundary(double coarseness) {
 
 std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
     const TetStore& tets = mesh_.tets();
-    std::vector<Face> out;
-    for (std::size_t i = 0; i < tets.slots(); ++i) {
-        const TetId t{i};
-        if (!mesh_.has_labels(t) || !tets.is_finite(t)) continue;
-        if (!mesh_.in_domain(t)) continue;
+    const auto list = [&](TetId t, std::vector<Face>& out) {
+        if (!mesh_.has_labels(t) || !tets.is_finite(t) || !mesh_.in_domain(t)) return;
         for (unsigned f = 0; f < 4; ++f) {
             if (!mesh_.labels(t).facets[f].valid()) continue;
             const auto fc = tets.face_corners(TetFace{t, f});
             const Vec3 &a = mesh_.point(fc[0]), &b = mesh_.point(fc[1]), &c = mesh_.point(fc[2]);
             const double spacing = spacing_at((1.0 / 3) * (a + b + c), mesh_.cell(t));
             if (spacing == kInfinity) continue;
-            out.push_back({{Vec3{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
+            out.push_back({{a, b, c},
+                           {Vec3{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
                             Vec3{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}},
                            spacing});
         }
-    }
+    };
+    const std::size_t slots = tets.slots();
+    std::vector<std::vector<Face>> found((slots + kGrain - 1) / kGrain);
+    workers_.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) list(TetId{i}, found[piece]);
+    });
+    std::vector<Face> out;
+    for (const std::vector<Face>& piece : found) out.insert(out.end(), piece.begin(), piece.end());
     return out;
 }
 

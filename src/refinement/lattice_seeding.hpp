@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -35,7 +36,11 @@ public:
     std::uint64_t seed();
 
 private:
+    /// For a view of a zone: splits its boundary.
+    LatticeSeeder(ConformingMesh& view, BoundaryRefiner& boundary, const LatticeSeeder& whole);
+
     struct Face {
+        std::array<Vec3, 3> corners{};
         std::array<Vec3, 2> box{};
         double spacing = 0;  ///< the smaller one of the cells at its sides, at its middle
     };
@@ -44,6 +49,12 @@ private:
 
     /// Down to `coarseness` times the bound. @return false if the guard said stop.
     bool split_boundary(double coarseness);
+    /// Most of the same, on all workers. @return false if the guard said stop.
+    bool split_boundary_in_zones(double coarseness);
+    void split_in_zone(double coarseness, std::vector<TetId> waiting, const std::function<bool(std::size_t)>& may_go_on);
+    class Listening;
+    void list_too_large(std::vector<TetId> of, double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
+    void list_all_too_large(double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     bool list_too_large(TetId t, double coarseness, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     [[nodiscard]] bool may_go_on(std::uint64_t waiting) { return guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting) == RunGuard::Verdict::go_on; }
     [[nodiscard]] std::vector<LatticePoint> find_lattice(double base);
@@ -55,8 +66,8 @@ private:
     };
     [[nodiscard]] std::vector<Seed> seeds_of(const std::vector<LatticePoint>& lattice);
     bool insert_seeds(std::span<Seed> seeds);
-    [[nodiscard]] std::vector<char> find_deep(std::span<const Seed> seeds) const;
-    bool insert_deep(std::span<Seed> seeds);
+    [[nodiscard]] std::vector<char> find_clear(std::span<Seed> seeds);
+    bool insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which);
     Outcome insert(const Vec3& p, TetId& near, VertexId known = {});
     [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double spacing_at(const Vec3& p, CellId c) const;

@@ -29,8 +29,8 @@ SizeFieldDomain sampled_domain(const ConformingMesh& mesh, RunGuard& guard, cons
 
 }  // namespace
 
-Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options)
-    : mesh_(mesh), boundary_(boundary), guard_(guard), exemptions_(mesh, boundary.acute()), sizes_(mesh.plc(), options.size, sampled_domain(mesh, guard, options.limits)),
+Refiner::Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options, Workers* workers)
+    : mesh_(mesh), boundary_(boundary), guard_(guard), workers_(workers ? *workers : alone_), exemptions_(mesh, boundary.acute()), shared_sizes_(std::make_shared<const SizeField>(mesh.plc(), options.size, sampled_domain(mesh, guard, options.limits))), sizes_(*shared_sizes_),
       max_radius_edge_(options.quality.max_radius_edge_ratio),
       max_vertices_(options.limits.max_vertices) {
     double largest = 0;
@@ -65,22 +65,41 @@ void Refiner::enqueue(const std::vector<TetId>& tets) {
         if (!mesh_.in_domain(t) || mesh_.tets().is_ghost(t)) continue;
         double badness = 0;
         const Fault fault = classify(t, badness);
-        if (is_forced(t, fault)) continue;
-        switch (fault) {
-            case Fault::none: break;
-            case Fault::size: by_size_.push(t, mesh_.tets().corners(t), badness); break;
-            case Fault::radius_edge:
-            case Fault::flat: by_radius_edge_.push(t, mesh_.tets().corners(t), badness); break;
-            case Fault::sliver: by_sliver_.push(t, mesh_.tets().corners(t), badness); break;
-        }
+        enqueue(t, fault, badness);
+    }
+}
+
+void Refiner::enqueue(TetId t, Fault fault, double badness) {
+    if (is_forced(t, fault)) return;
+    switch (fault) {
+        case Fault::none: break;
+        case Fault::size: by_size_.push(t, mesh_.tets().corners(t), badness); break;
+        case Fault::radius_edge:
+        case Fault::flat: by_radius_edge_.push(t, mesh_.tets().corners(t), badness); break;
+        case Fault::sliver: by_sliver_.push(t, mesh_.tets().corners(t), badness); break;
     }
 }
 
 void Refiner::enqueue_all() {
-    std::vector<TetId> all;
-    for (std::size_t i = 0; i < mesh_.tets().slots(); ++i)
-        if (mesh_.tets().is_finite(TetId{i})) all.push_back(TetId{i});
-    enqueue(all);
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    struct Faulty {
+        TetId tet{};
+        Fault fault = Fault::none;
+        double badness = 0;
+    };
+    // What forces a tetrahedron may be looked up for the first time: not by several threads at once. Few are faulty.
+    const std::size_t slots = mesh_.tets().slots();
+    std::vector<std::vector<Faulty>> found((slots + kGrain - 1) / kGrain);
+    workers_.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Faulty f{TetId{i}};
+            if (!mesh_.tets().is_finite(f.tet) || !mesh_.in_domain(f.tet)) continue;
+            f.fault = classify(f.tet, f.badness);
+            if (f.fault != Fault::none) found[piece].push_back(f);
+        }
+    });
+    for (const std::vector<Faulty>& piece : found)
+        for (const Faulty& f : piece) enqueue(f.tet, f.fault, f.badness);
 }
 
 /// From now on what is made is looked at; before, all of it would wait in vain, as the mesh is looked at as a whole.
@@ -139,6 +158,7 @@ RunGuard::Verdict Refiner::refine() {
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     for (unsigned cascades = 0;; ++cascades) {
         try {
+            if (cascades == 0) drain_in_zones();
             verdict = drain();
             break;
         } catch (const MeshError& e) {

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <unordered_set>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
 #include "core/run_guard.hpp"
+#include "core/workers.hpp"
 #include "refinement/bad_tet_queue.hpp"
 #include "refinement/sliver_rule.hpp"
 #include "refinement/thin_gaps.hpp"
@@ -29,7 +32,8 @@ struct RefineStatistics {
 
 class Refiner {
 public:
-    Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options);
+    /// @param workers  who shares in the work; none: the calling thread alone. What comes of it is the same.
+    Refiner(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const MeshOptions& options, Workers* workers = nullptr);
 
     /// Splits until no tetrahedron of the domain violates its size or the radius-edge bound.
     /// @return what stopped it; the mesh conforms in any case.
@@ -85,9 +89,17 @@ public:
     }
 
 private:
+    /// For a view of a zone.
+    Refiner(ConformingMesh& view, BoundaryRefiner& boundary, Refiner& whole);
+    /// Much of drain(), on all workers, where much waits.
+    void drain_in_zones();
+    void drain_zone(const std::function<bool(std::size_t)>& may_go_on);
+    void join(const Refiner& zone);
+    [[nodiscard]] bool may_work_in_zones() const { return !max_vertices_ && !sliver_rule_ && given_up_.empty() && !gaps_.any() && boundary_.may_work_in_zones(); }
     RunGuard::Verdict drain();
     void keep_last();
     void enqueue(const std::vector<TetId>& tets);
+    void enqueue(TetId t, Fault fault, double badness);
     void enqueue_all();
     void listen();
     void process(TetId t, InsertionReason reason);
@@ -115,12 +127,15 @@ private:
     ConformingMesh& mesh_;
     BoundaryRefiner& boundary_;
     RunGuard& guard_;
+    Workers alone_;
+    Workers& workers_;
     AcuteExemptions exemptions_;
     ThinGaps gaps_;
     std::optional<ConformingMesh> last_;  // of refine(), with fewer vertices than the user allows
     std::uint64_t left_at_last_ = 0;      // vertices that were left then, or that were there if the user allows any number
     bool keeps_last_ = false;
-    SizeField sizes_;
+    std::shared_ptr<const SizeField> shared_sizes_;  // with views of zones
+    const SizeField& sizes_;
     double max_radius_edge_;
     std::optional<std::uint64_t> max_vertices_;
     std::optional<SliverRule> sliver_rule_{};
@@ -139,6 +154,7 @@ private:
     std::uint32_t splitting_ = 0;                 // the tetrahedron at hand, by its fingerprint
     std::unordered_set<std::uint32_t> given_up_;  // what set off a cascade
     BadTetQueue by_size_, by_radius_edge_, by_sliver_;
+    BadTetQueue left_by_size_, left_by_radius_edge_;  // of a view: left the zone
     RefineStatistics statistics_;
     Cavity cavity_;
     std::vector<Subsegment> encroached_segments_;

@@ -87,6 +87,7 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
             return false;
         }
     }
+    if (!mesh_.may_insert(cavity_, where)) return false;
     PickEvent event;
     if (boundary_.recorder) event = describe(t, reason, centre, radius);
     const VertexId v = mesh_.insert(cavity_, where, {.reason = reason, .parent = parent});

@@ -2,8 +2,6 @@
 #include "shape/zone_passes.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -14,13 +12,8 @@
 namespace wellmesh {
 namespace {
 
-/// So many tetrahedra are worth two zones, four times as many worth four, and so on: small zones are mostly limits.
-constexpr double kTetsOfTwoZones = 1 << 15;
-/// Cutting and joining costs some ten nanoseconds a tetrahedron, a move some ten microseconds.
-constexpr std::size_t kTetsPerWork = 2048;
 constexpr std::size_t kLeastBadAZone = 64, kLeastVerticesAZone = 256;
 constexpr std::size_t kSampleAZone = 512;
-constexpr unsigned kTurns = 4;
 
 }  // namespace
 
@@ -48,7 +41,7 @@ public:
         std::vector<VertexId> vertices, waiting;
     };
 
-    Team(ZonePasses& whole, const Zones& zones) : whole_(whole), views_(whole.mesh_.split(whole.workers_, zones, parts_)) {
+    Team(ZonePasses& whole, const Zones& zones) : whole_(whole), views_(whole.mesh_.split(whole.workers_, zones, {}, parts_)) {
         for (ConformingMesh& view : views_) members_.push_back(std::make_unique<Member>(whole, view));
     }
     [[nodiscard]] Member& operator[](std::size_t z) { return *members_[z]; }
@@ -74,19 +67,12 @@ private:
     std::vector<std::unique_ptr<Member>> members_;
 };
 
-std::size_t ZonePasses::zones_for(std::size_t work, std::size_t least_a_zone, unsigned turn) const {
-    const std::size_t tets = mesh_.tets().live();
-    if (work < tets / kTetsPerWork) return 0;
-    const std::size_t most = std::bit_floor(std::min({work / least_a_zone, static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(tets) / kTetsOfTwoZones)), Zones::kMost}));
-    return most < 2 ? 0 : std::max<std::size_t>(2, most >> turn);
-}
-
 RunGuard::Verdict ZonePasses::mend(unsigned samples) {
     // Moves change no number of vertices: whether there are too many does not depend on who asks first.
     RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), mending_.count());
-    for (unsigned turn = 0; turn < kTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
+    for (unsigned turn = 0; turn < Zones::kTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
         std::vector<Bad>& waiting = mending_.waiting();
-        const std::size_t count = zones_for(waiting.size(), kLeastBadAZone, turn);
+        const std::size_t count = Zones::worth(mesh_.tets().live(), waiting.size(), kLeastBadAZone, turn);
         if (count < 2) break;
         std::vector<Vec3> sample;
         const std::size_t step = std::max<std::size_t>(1, waiting.size() / (kSampleAZone * count));
@@ -121,8 +107,8 @@ RunGuard::Verdict ZonePasses::share_out(std::vector<VertexId>& vertices, std::si
 
 RunGuard::Verdict ZonePasses::smooth(std::vector<VertexId>& vertices, double floor) {
     RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), mending_.count());
-    for (unsigned turn = 0; turn < kTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
-        const std::size_t zones = zones_for(vertices.size(), kLeastVerticesAZone, turn);
+    for (unsigned turn = 0; turn < Zones::kTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
+        const std::size_t zones = Zones::worth(mesh_.tets().live(), vertices.size(), kLeastVerticesAZone, turn);
         if (zones < 2) break;
         verdict = share_out(vertices, zones, turn, [&](Team::Member& m, const Mending::MayGoOn& may_go_on) { m.mending.smooth(m.vertices, floor, m.waiting, may_go_on); });
     }

@@ -30,9 +30,6 @@ public:
 
 private:
     class Team;
-    /// Into how many zones is so much work worth being cut? 0: into none. Less in later turns, as more zones have more limits.
-    [[nodiscard]] std::size_t zones_for(std::size_t work, std::size_t least_a_zone, unsigned turn) const;
-
     template <class Work>
     RunGuard::Verdict share_out(std::vector<VertexId>& vertices, std::size_t zones, unsigned turn, const Work& work);
 

@@ -137,7 +137,7 @@ TEST(Zones, AViewRefusesWhatLeavesItsZone) {
     for (std::size_t v = 0; v < mesh.vertex_slots(); ++v) sample.push_back(mesh.point(VertexId{v}));
     const Zones zones(sample, 2, 0);
     ZoneViews parts;
-    std::vector<ConformingMesh> views = mesh.split(staged.workers, zones, parts);
+    std::vector<ConformingMesh> views = mesh.split(staged.workers, zones, {}, parts);
     ASSERT_EQ(views.size(), 2U);
     std::size_t whole = 0, left = 0;
     std::vector<TetId> star;
