@@ -143,7 +143,7 @@ public:
     BulkObserver& for_zone(std::size_t) override { return *this; }
     void join() override {}
     bool welcomes(const Vec3& p, TetId) override { return p.x < 0.9; }
-    Answer prepare(const Cavity& cavity) override {
+    Answer prepare(VertexId, const Cavity& cavity) override {
         const Vec3 &p = cavity.point;
         return (p.x - 0.5) * (p.x - 0.5) + (p.y - 0.5) * (p.y - 0.5) + (p.z - 0.5) * (p.z - 0.5) < 0.04 ? Answer::never : Answer::yes;
     }
