@@ -141,8 +141,6 @@ private:
     void recover_segments();
     bool recover_facet(FacetId f);
     void repair_broken();
-    void mend_lost_faces();
-    void split_lost(FacetId f, const std::array<VertexId, 3>& corners);
     void refresh_cells();
     void find_all_cells();
     void drain_segments();

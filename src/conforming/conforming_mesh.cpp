@@ -221,8 +221,6 @@ TetFace ConformingMesh::find_subface(const Subface& s) {
 }
 
 std::vector<FacetId> ConformingMesh::take_broken_facets() {
-    for (const Subface& s : lost_) broken_facets_.push_back(s.facet);
-    lost_.clear();
     std::sort(broken_facets_.begin(), broken_facets_.end());
     broken_facets_.erase(std::unique(broken_facets_.begin(), broken_facets_.end()), broken_facets_.end());
     return std::exchange(broken_facets_, {});

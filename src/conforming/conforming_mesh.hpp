@@ -204,10 +204,7 @@ public:
     /// Facets and segments that lost a piece since the last call.
     [[nodiscard]] std::vector<FacetId> take_broken_facets();
     [[nodiscard]] std::vector<SegmentId> take_broken_segments();
-    [[nodiscard]] bool has_broken() const { return !broken_facets_.empty() || !lost_.empty() || !broken_segments_.empty(); }
-    /// Subfaces that are gone with nothing in their place: of the broken facets those that are broken nowhere else may be mended where they are. A vertex
-    /// on the facet and inside the equatorial sphere of a lost face takes its place.
-    [[nodiscard]] const std::vector<Subface>& lost_faces() const { return lost_; }
+    [[nodiscard]] bool has_broken() const { return !broken_facets_.empty() || !broken_segments_.empty(); }
 
     /// The subsegment or subface in the last state of the mesh, if it is one.
     [[nodiscard]] TetId find_subsegment(const Subsegment& s);  ///< a tetrahedron with the labelled edge, or invalid
@@ -226,7 +223,6 @@ private:
         FacetId facet{};
         std::uint32_t boundary = kNotOnBoundary;  // index of the cavity's boundary face that it is
         bool used = false;
-        bool lost = false;  // it is none any more: the next of the facet's lost faces
         static constexpr std::uint32_t kNotOnBoundary = 0xffffffffU;
     };
     struct LoopEdge {
@@ -267,8 +263,7 @@ private:
     std::vector<std::vector<VertexId>> on_segment_;  // and on each segment
     std::vector<char> facet_labelled_;
     std::vector<TetId> forgotten_;
-    std::vector<FacetId> broken_facets_;  // other than by lost_
-    std::vector<Subface> lost_;
+    std::vector<FacetId> broken_facets_;
     std::vector<SegmentId> broken_segments_;
     std::vector<VertexId> spare_vertices_;  // of a view: for it to insert; of the whole: left over by views. The last one is taken first
     std::vector<VertexId> added_;           // of a view: inserted

@@ -55,7 +55,7 @@ void ConformingMesh::collect_interior(const Cavity& cavity, const Placement& whe
         for (unsigned f = 0; f < 4; ++f) {
             if (!l.facets[f].valid()) continue;
             const TetId other = tets.across(t, f).tet();
-            if (tri_.in_last_cavity(other) && t < other) interior_.push_back({tets.face_corners(TetFace{t, f}), l.facets[f]});
+            if (tri_.in_last_cavity(other) && t < other) interior_.push_back({tets.face_corners(TetFace{t, f}), l.facets[f], InteriorFace::kNotOnBoundary, false});
         }
         for (unsigned e = 0; e < 6; ++e) {
             if (!l.segments[e].valid()) continue;
@@ -71,12 +71,8 @@ void ConformingMesh::collect_interior(const Cavity& cavity, const Placement& whe
         const CapturedFace& c = captured_[i];
         if (!c.facet.valid() || std::find(facets.begin(), facets.end(), c.facet) == facets.end()) continue;
         if (side_of_equatorial_sphere(point(c.corners[0]), point(c.corners[1]), point(c.corners[2]), cavity.point) == Sign::positive)
-            interior_.push_back({c.corners, c.facet, static_cast<std::uint32_t>(i)});
+            interior_.push_back({c.corners, c.facet, static_cast<std::uint32_t>(i), false});
     }
-    for (const Subface& s : lost_)
-        if (std::find(facets.begin(), facets.end(), s.facet) != facets.end() &&
-            side_of_equatorial_sphere(point(s.corners[0]), point(s.corners[1]), point(s.corners[2]), cavity.point) == Sign::positive)
-            interior_.push_back({.corners = s.corners, .facet = s.facet, .lost = true});
 }
 
 bool ConformingMesh::is_segment_edge(VertexId a, VertexId b) const {
@@ -163,19 +159,14 @@ bool ConformingMesh::holds_carrier(const Cavity& cavity, const Placement& where)
 /// @return whether a facet is: then cells leak.
 bool ConformingMesh::note_destroyed(const Placement& where) {
     const std::size_t before = broken_facets_.size();
-    bool leaks = false;
-    for (const InteriorFace& f : interior_) {
-        if (f.lost && f.used) std::erase_if(lost_, [&](const Subface& s) { return s.corners == f.corners && s.facet == f.facet; });
-        if (f.lost || f.used || f.boundary != InteriorFace::kNotOnBoundary) continue;
-        lost_.push_back({f.corners, f.facet});
-        leaks = true;
-    }
+    for (const InteriorFace& f : interior_)
+        if (!f.used && f.boundary == InteriorFace::kNotOnBoundary) broken_facets_.push_back(f.facet);
     for (const Subsegment& s : interior_segments_)
         if (where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b)) broken_segments_.push_back(s.segment);
     // An edge of the loop that is a destroyed subsegment carries no face of the star: the surface is open there.
     for (const LoopEdge& e : loop_)
         if (std::find(rim_.begin(), rim_.end(), edge_key(e.a, e.b)) == rim_.end()) broken_facets_.push_back(e.facet);
-    return leaks || broken_facets_.size() != before;
+    return broken_facets_.size() != before;
 }
 
 /// The same, of the insertion that was planned, without noting it.
@@ -198,7 +189,7 @@ void ConformingMesh::plan(const Cavity& cavity, const Placement& where) {
     rim_.clear();
     interior_.clear();
     interior_segments_.clear();
-    if (lost_.empty() && std::none_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId t) { return has_labels(t); })) return;
+    if (std::none_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId t) { return has_labels(t); })) return;
     collect_interior(cavity, where);
     for (const FacetId f : facets_of(where)) replace_subfaces(cavity, where, f);
     if (loop_.empty()) return;
@@ -209,7 +200,7 @@ void ConformingMesh::plan(const Cavity& cavity, const Placement& where) {
 bool ConformingMesh::would_break(const Cavity& cavity, const Placement& where) {
     plan(cavity, where);
     for (const InteriorFace& f : interior_)
-        if (!f.used && !f.lost && f.boundary == InteriorFace::kNotOnBoundary) return true;
+        if (!f.used && f.boundary == InteriorFace::kNotOnBoundary) return true;
     for (const Subsegment& s : interior_segments_)
         if (where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b)) return true;
     return false;

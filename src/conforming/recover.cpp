@@ -52,31 +52,20 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
             double radius = 0;
             const Vec3 centre = circumcentre(a, b, c, &radius);
             if (std::any_of(taken.begin(), taken.end(), [&](const Vec3& p) { return squared_distance(p, centre) < radius * radius; })) continue;
+            const ValidFacet& facet = mesh_.plc().facets[f.index()];
+            const std::uint64_t key = mix64(seed_, mix64(m.corners[0].value(), mix64(m.corners[1].value(), m.corners[2].value())));
+            const Vec3 unit = picking_point(2, key, 1);
+            const Vec3 wanted = project_to_facet(facet, centre + (rules.jitter * radius * unit.x) * facet.axis_u + (rules.jitter * radius * unit.y) * facet.axis_v);
             // The last vertex allowed may have been the last one needed.
             if (mesh_.vertex_count() > before && guard_.has_too_many(mesh_.vertex_count() + 1)) break;
             poll_or_throw(f);
             taken.push_back(centre);
-            split_lost(f, m.corners);
+            if (acute_.copies()) split_acute(f, m.corners, false, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
+            else try_insert_on_facet(f, wanted, mesh_.triangulation().tet_of(m.corners[0]), {InsertionReason::recovery, m.corners[0]});
         }
         drain_segments();
         if (mesh_.vertex_count() == before) give_up(Subface{missing[0].corners, f});
     }
-}
-
-/// Splits a triangle of the facet that is no face of the mesh.
-void BoundaryRefiner::split_lost(FacetId f, const std::array<VertexId, 3>& corners) {
-    const TetId near = mesh_.triangulation().tet_of(corners[0]);
-    const SplitRequest request{InsertionReason::recovery, corners[0]};
-    if (acute_.copies()) {
-        split_acute(f, corners, false, near, request);
-        return;
-    }
-    double radius = 0;
-    const Vec3 centre = circumcentre(mesh_.point(corners[0]), mesh_.point(corners[1]), mesh_.point(corners[2]), &radius);
-    const ValidFacet& facet = mesh_.plc().facets[f.index()];
-    const std::uint64_t key = mix64(seed_, mix64(corners[0].value(), mix64(corners[1].value(), corners[2].value())));
-    const Vec3 unit = picking_point(2, key, 1);
-    try_insert_on_facet(f, project_to_facet(facet, centre + (rules.jitter * radius * unit.x) * facet.axis_u + (rules.jitter * radius * unit.y) * facet.axis_v), near, request);
 }
 
 /// Inserts the point, or splits the subsegments that it would encroach. Nothing happens at the place of a vertex.
@@ -102,32 +91,11 @@ void BoundaryRefiner::try_insert_on_facet(FacetId f, const Vec3& wanted, TetId n
     recorder->on_pick(e);
 }
 
-/// Of two facets with a gap between them each loses a subface wherever a vertex comes on the other one: a vertex in the lost subface's sphere mends that
-/// without a look at the whole facet.
-void BoundaryRefiner::mend_lost_faces() {
-    constexpr unsigned kMostInTurn = 64;  // they may destroy others in turn
-    const auto radius_of = [&](const Subface& s) {
-        double radius = 0;
-        (void)circumcentre(mesh_.point(s.corners[0]), mesh_.point(s.corners[1]), mesh_.point(s.corners[2]), &radius);
-        return radius;
-    };
-    for (unsigned n = 0; n < kMostInTurn && !mesh_.lost_faces().empty(); ++n) {
-        const std::vector<Subface>& lost = mesh_.lost_faces();
-        const Subface s = *std::max_element(lost.begin(), lost.end(), [&](const Subface& x, const Subface& y) { return radius_of(x) < radius_of(y); });
-        poll_or_throw(s.facet);
-        const std::size_t before = mesh_.vertex_count();
-        split_lost(s.facet, s.corners);
-        drain_segments();
-        if (mesh_.vertex_count() == before) return;
-    }
-}
-
 void BoundaryRefiner::repair_broken() {
     drain_segments();
-    mend_lost_faces();
-    cells_stale_ = true;
     for (const FacetId f : mesh_.take_broken_facets()) {
         recover_facet(f);
+        cells_stale_ = true;
     }
 }
 

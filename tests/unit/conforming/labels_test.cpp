@@ -216,43 +216,6 @@ TEST_P(Labels, SurviveInsertionsAndRemovals) {
     EXPECT_GT(removed[2], refused[2]);
 }
 
-/// A vertex close under a facet destroys a subface of it; one above that, on the facet, takes the subface's place.
-TEST(LostFaces, AreReplacedByAVertexInTheirSphere) {
-    Plc plc = cube();
-    const auto first = static_cast<std::uint32_t>(plc.vertices.size());
-    for (const auto& [x, y] : {std::pair{0.2, 0.2}, {0.8, 0.2}, {0.8, 0.8}, {0.2, 0.8}}) plc.vertices.push_back({x, y, 0.05});
-    PlcFacet square;
-    square.polygons = {{first, first + 1, first + 2, first + 3}};
-    plc.facets.push_back(square);
-    StagedMesh staged(plc);
-    staged.conform();
-    ASSERT_EQ(staged.problem(true), "");
-    const auto facet_at = [&](double z) {
-        for (std::size_t f = 0; f < staged.plc.facets.size(); ++f) {
-            const ValidFacet& facet = staged.plc.facets[f];
-            if (std::all_of(facet.vertices.begin(), facet.vertices.end(), [&](VertexId v) { return staged.plc.vertices[v.index()].z == z; })) return FacetId{f};
-        }
-        return FacetId{};
-    };
-    Cavity cavity;
-    const auto insert = [&](const Vec3& p, FacetId f) {
-        ASSERT_TRUE(staged.mesh.triangulation().find_conflict_cavity(p, TetId{}, cavity));
-        staged.mesh.insert(cavity, Placement::on_facet(f), {});
-    };
-    insert({0.47, 0.52, 0}, facet_at(0));
-    ASSERT_FALSE(staged.mesh.lost_faces().empty());
-    for (const Subface& s : staged.mesh.lost_faces()) EXPECT_EQ(s.facet, facet_at(0.05));
-    insert({0.47, 0.52, 0.05}, facet_at(0.05));
-    EXPECT_TRUE(staged.mesh.lost_faces().empty());
-    EXPECT_FALSE(staged.mesh.has_broken());
-    ASSERT_TRUE(classify_again(staged.mesh, [&] {
-        std::vector<TetId> forgotten = staged.mesh.take_forgotten();
-        std::erase_if(forgotten, [&](TetId t) { return !staged.mesh.tets().is_live(t); });
-        return forgotten;
-    }()));
-    EXPECT_EQ(staged.problem(false), "");
-}
-
 TEST_P(Labels, UndoneInsertionsLeaveNoTrace) {
     StagedMesh& staged = *staged_;
     Workshop workshop(staged, 23);
