@@ -5,10 +5,14 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
+#include <vector>
 
 #include "commands.hpp"
 #include "exit_status.hpp"
@@ -66,6 +70,18 @@ struct Repaired {
     Diagnosis left;  ///< of the file as it was written
 };
 
+/// Copies of a facet are winding numbers in surface files; elsewhere they are repetitions, and count twice where areas are compared.
+Plc with_facets_once(Plc plc) {
+    std::set<std::vector<std::uint32_t>> known;
+    std::erase_if(plc.facets, [&](const PlcFacet& facet) {
+        std::vector<std::uint32_t> corners;
+        for (const auto& polygon : facet.polygons) corners.insert(corners.end(), polygon.begin(), polygon.end());
+        std::sort(corners.begin(), corners.end());
+        return !known.insert(corners).second;
+    });
+    return plc;
+}
+
 Repaired write_repaired(const DoctorCommand& arguments, const Plc& plc, Interrupt& interrupt) {
     Repaired repaired;
     const Interrupt::Cooperative cooperative(interrupt);
@@ -74,7 +90,8 @@ Repaired write_repaired(const DoctorCommand& arguments, const Plc& plc, Interrup
     repaired.result = repair(plc, options, interrupt.token());
     if (!repaired.result.resolved || repaired.result.max_displacement > 2 * repaired.result.tolerance) return repaired;
     require_expressible(arguments, plc, repaired.result.diagnosis);
-    write_plc(repaired.result.plc, arguments.repaired);
+    const bool is_surface = plc.fill == FillRule::nonzero_winding && !arguments.repaired.ends_with(".poly") && !arguments.repaired.ends_with(".smesh");
+    write_plc(is_surface ? repaired.result.plc : with_facets_once(repaired.result.plc), arguments.repaired);
     repaired.written = true;
     repaired.left = diagnose(read_plc(arguments.repaired), arguments.options);
     return repaired;

@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <set>
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 #include <fmt/format.h>
@@ -130,6 +134,18 @@ TEST_F(doctor, a_tolerance_joins_what_is_closer) {
     EXPECT_GT(moved, 0);
     EXPECT_LE(moved, 0.004);
     EXPECT_EQ(run_wellmesh({"mesh", "mended.poly", "-o", "mended.mesh"}, here).status, 0);
+}
+
+/// In a surface file two facets between solids that touch say that the wall belongs to both; in a .poly the second would be a repetition.
+TEST_F(doctor, a_wall_between_touching_solids_stands_once_in_a_poly) {
+    (void)scratch.write("two.off", cubes_off({{0, 0, 0}, {1, 0.25, 0.25}}));
+    for (const auto& [output, copies] : {std::pair{"mended.off", true}, {"mended.poly", false}}) {
+        ASSERT_EQ(run({"two.off", "--repair", output}).status, 0);
+        std::set<std::set<std::uint32_t>> distinct;
+        const Plc mended = read_plc(scratch.file(output));
+        for (const PlcFacet& f : mended.facets) distinct.emplace(f.polygons[0].begin(), f.polygons[0].end());
+        EXPECT_EQ(distinct.size() < mended.facets.size(), copies) << output;
+    }
 }
 
 TEST_F(doctor, what_can_not_be_done_is_refused_before_anything_is_written) {
