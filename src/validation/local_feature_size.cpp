@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <unordered_set>
 
 #include "core/vec3_math.hpp"
 
@@ -78,6 +79,8 @@ double LocalFeatureSize::operator()(const Vec3& x) const {
     const auto push_node = [&](std::uint32_t n) { waiting.push({nodes_[n].box.distance_to(x), n}); };
     if (!nodes_.empty()) push_node(0);
     std::vector<std::uint32_t> met;
+    std::unordered_set<std::uint32_t> known;
+    std::vector<std::uint32_t> common;  // vertices of all that were met: at the apex of a thousand features they are all incident there
     while (!waiting.empty()) {
         const auto [distance, what] = waiting.top();
         waiting.pop();
@@ -98,8 +101,11 @@ double LocalFeatureSize::operator()(const Vec3& x) const {
             continue;
         }
         const auto feature = static_cast<std::uint32_t>(-1 - what);
-        if (std::find(met.begin(), met.end(), feature) != met.end()) continue;
-        if (std::any_of(met.begin(), met.end(), [&](std::uint32_t other) { return !incident(feature, other); })) return distance;
+        if (!known.insert(feature).second) continue;
+        const std::vector<std::uint32_t>& own = vertices_[feature];
+        if (met.empty()) common = own;
+        else std::erase_if(common, [&](std::uint32_t v) { return !std::binary_search(own.begin(), own.end(), v); });
+        if (common.empty() && std::any_of(met.begin(), met.end(), [&](std::uint32_t other) { return !incident(feature, other); })) return distance;
         met.push_back(feature);
     }
     return kInfinity;
