@@ -67,7 +67,9 @@ public:
     /// that would split it. Empty if there is none.
     [[nodiscard]] std::optional<ForcedBy> forced_by(TetId t);
     /// Leaves gaps that would take more vertices than these as they are. @pre the mesh conforms, and is not refined yet.
-    void leave_gaps(double most_vertices) { gaps_ = ThinGaps(mesh_, most_vertices); }
+    void leave_gaps(double most_vertices) {
+        gaps_ = ThinGaps(mesh_, most_vertices, [this](TetId t) { return exemptions_.feature_at(t).has_value(); });
+    }
     [[nodiscard]] const ThinGaps& gaps() const { return gaps_; }
     [[nodiscard]] bool is_in_gap(TetId t) const { return gaps_.sides_joined_by(mesh_, t).has_value(); }
     /// Is a tetrahedron that misses a goal of shape to be left as it is?

@@ -39,13 +39,25 @@ double smallest_height(const ConformingMesh& mesh, TetId t) {
 
 }  // namespace
 
-ThinGaps::ThinGaps(const ConformingMesh& mesh, double most_vertices) {
+ThinGaps::ThinGaps(const ConformingMesh& mesh, double most_vertices, const std::function<bool(TetId)>& is_forced) {
+    // What each piece of the boundary takes at most, from the tetrahedron beside it: mostly that settles it.
+    std::vector<Candidate> candidates;
     for (std::size_t i = 0; i < mesh.tets().slots(); ++i) {
         const TetId t{i};
         if (!mesh.tets().is_finite(t) || !mesh.in_domain(t) || !mesh.has_labels(t)) continue;
-        look_at_faces(mesh, t);
-        look_at_edges(mesh, t);
+        list_faces(mesh, t, candidates);
+        list_edges(mesh, t, candidates);
     }
+    double rest = 0;
+    for (const Candidate& c : candidates) rest += c.most;
+    if (rest <= most_vertices) return;
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) { return x.most < y.most; });
+    feature_size_ = std::make_unique<LocalFeatureSize>(mesh.plc());
+    std::size_t first = 0;  // those before it take next to nothing
+    constexpr double kNextToNothing = 0.1;
+    for (double sum = 0; first < candidates.size() && (sum += candidates[first].most) <= kNextToNothing * most_vertices;) ++first;
+    for (std::size_t i = first; i < candidates.size(); ++i)
+        if (!is_forced(candidates[i].tet)) sample(mesh, candidates[i]);
     choose(most_vertices);
     if (!any()) feature_size_.reset();
     samples_ = {};
@@ -58,44 +70,55 @@ bool ThinGaps::are_apart(const ConformingMesh& mesh, VertexId u, VertexId v) con
 }
 
 /// Triangles of a facet whose tetrahedron ends on something else that is near.
-void ThinGaps::look_at_faces(const ConformingMesh& mesh, TetId t) {
+void ThinGaps::list_faces(const ConformingMesh& mesh, TetId t, std::vector<Candidate>& out) const {
     const auto& c = mesh.tets().corners(t);
     for (unsigned f = 0; f < 4; ++f) {
-        const FacetId facet = mesh.labels(t).facets[f];
-        if (!facet.valid() || mesh.info(c[f]).carrier == CarrierKind::region) continue;
+        if (!mesh.labels(t).facets[f].valid() || mesh.info(c[f]).carrier == CarrierKind::region) continue;
         const auto fc = mesh.tets().face_corners(TetFace{t, f});
-        const std::array<Vec3, 3> at{mesh.point(fc[0]), mesh.point(fc[1]), mesh.point(fc[2])};
-        const double twice_area = norm(cross(at[1] - at[0], at[2] - at[0]));
-        const double height = std::abs(six_volumes(at[0], at[1], at[2], mesh.point(c[f]))) / twice_area;
-        if (!(twice_area > kSlender * kSlender * height * height)) continue;
-        if (!feature_size_) feature_size_ = std::make_unique<LocalFeatureSize>(mesh.plc());
-        const auto near = std::find_if(fc.begin(), fc.end(), [&](VertexId v) { return are_apart(mesh, v, c[f]); });
-        if (near == fc.end()) continue;
-        const LocalFeatureSize& size = *feature_size_;
-        sample_gap(size, at, {size(at[0]), size(at[1]), size(at[2])}, [&](double area, double width) {
-            if (height < kSameGap * width) samples_.push_back({width, vertices_beside_facet(area, width), *near, c[f]});
-        });
+        const double twice_area = norm(cross(mesh.point(fc[1]) - mesh.point(fc[0]), mesh.point(fc[2]) - mesh.point(fc[0])));
+        const double height = std::abs(six_volumes(mesh.point(fc[0]), mesh.point(fc[1]), mesh.point(fc[2]), mesh.point(c[f]))) / twice_area;
+        if (twice_area > kSlender * kSlender * height * height) out.push_back({vertices_beside_facet(0.5 * twice_area, height / kSameGap), height, t, f, {}});
     }
 }
 
 /// Pieces of segments beside another segment, or beside a facet that they do not touch.
-void ThinGaps::look_at_edges(const ConformingMesh& mesh, TetId t) {
+void ThinGaps::list_edges(const ConformingMesh& mesh, TetId t, std::vector<Candidate>& out) const {
     const auto& c = mesh.tets().corners(t);
     for (unsigned e = 0; e < 6; ++e) {
         if (!mesh.labels(t).segments[e].valid()) continue;
-        const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
-        const double length = distance(mesh.point(a), mesh.point(b));
+        const Vec3 &a = mesh.point(c[kEdgeCorners[e][0]]), &b = mesh.point(c[kEdgeCorners[e][1]]);
+        const double length = distance(a, b);
         for (const unsigned k : {unsigned{kEdgeCorners[5 - e][0]}, unsigned{kEdgeCorners[5 - e][1]}}) {
-            const VertexId far = c[k];
-            if (mesh.info(far).carrier == CarrierKind::region || mesh.info(far).carrier == CarrierKind::input_vertex) continue;
-            const double off = norm(cross(mesh.point(far) - mesh.point(a), mesh.point(b) - mesh.point(a))) / length;
-            if (!(length > kSlender * off)) continue;
-            if (!feature_size_) feature_size_ = std::make_unique<LocalFeatureSize>(mesh.plc());
-            if (!are_apart(mesh, a, far) && !are_apart(mesh, b, far)) continue;
-            const double width = (*feature_size_)(0.5 * (mesh.point(a) + mesh.point(b)));
-            if (off < kSameGap * width) samples_.push_back({width, vertices_beside_segment(length, width), a, far});
+            const CarrierKind carrier = mesh.info(c[k]).carrier;
+            if (carrier == CarrierKind::region || carrier == CarrierKind::input_vertex) continue;
+            const double off = norm(cross(mesh.point(c[k]) - a, b - a)) / length;
+            if (length > kSlender * off) out.push_back({vertices_beside_segment(length, off / kSameGap), off, t, e, c[k]});
         }
     }
+}
+
+/// What a piece really takes, if there is a gap at all.
+void ThinGaps::sample(const ConformingMesh& mesh, const Candidate& candidate) {
+    const LocalFeatureSize& size = *feature_size_;
+    const auto& c = mesh.tets().corners(candidate.tet);
+    if (candidate.far.valid()) {
+        const VertexId a = c[kEdgeCorners[candidate.at][0]], b = c[kEdgeCorners[candidate.at][1]];
+        if (!are_apart(mesh, a, candidate.far) && !are_apart(mesh, b, candidate.far)) return;
+        const double width = size(0.5 * (mesh.point(a) + mesh.point(b)));
+        if (candidate.height < kSameGap * width) samples_.push_back({width, vertices_beside_segment(distance(mesh.point(a), mesh.point(b)), width), a, candidate.far});
+        return;
+    }
+    const VertexId far = c[candidate.at];
+    const ValidPlc& plc = mesh.plc();
+    const std::size_t facet = plc.vertices.size() + plc.segments.size() + mesh.labels(candidate.tet).facets[candidate.at].index();
+    if (size.incident(static_cast<std::uint32_t>(facet), feature_of(mesh, far))) return;
+    const auto fc = mesh.tets().face_corners(TetFace{candidate.tet, candidate.at});
+    const auto near = std::find_if(fc.begin(), fc.end(), [&](VertexId v) { return are_apart(mesh, v, far); });
+    if (near == fc.end()) return;
+    const std::array<Vec3, 3> at{mesh.point(fc[0]), mesh.point(fc[1]), mesh.point(fc[2])};
+    sample_gap(size, at, {size(at[0]), size(at[1]), size(at[2])}, [&](double area, double width) {
+        if (candidate.height < kSameGap * width) samples_.push_back({width, vertices_beside_facet(area, width), *near, far});
+    });
 }
 
 /// The narrowest gaps are left, as many as it takes.

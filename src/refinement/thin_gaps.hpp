@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -27,7 +28,8 @@ public:
     /// No gaps.
     ThinGaps() = default;
     /// Looks through a conforming mesh. @param most_vertices  that may be spent on gaps: the widest are filled as far as these go.
-    ThinGaps(const ConformingMesh& mesh, double most_vertices);
+    /// @param is_forced  is a tetrahedron excused by an acute angle anyway? What narrows there is no gap.
+    ThinGaps(const ConformingMesh& mesh, double most_vertices, const std::function<bool(TetId)>& is_forced);
 
     /// Is any gap left?
     [[nodiscard]] bool any() const { return left_.has_value(); }
@@ -44,8 +46,17 @@ private:
         double vertices = 0;  // that it needs if the gap is filled
         VertexId near{}, far{};
     };
-    void look_at_faces(const ConformingMesh& mesh, TetId t);
-    void look_at_edges(const ConformingMesh& mesh, TetId t);
+    /// A face or edge of a tetrahedron that may be beside a gap.
+    struct Candidate {
+        double most = 0;    // vertices that it takes at most
+        double height = 0;  // of the tetrahedron's other corner over it
+        TetId tet{};
+        unsigned at = 0;    // number of the face or edge
+        VertexId far{};     // of an edge: that corner
+    };
+    void list_faces(const ConformingMesh& mesh, TetId t, std::vector<Candidate>& out) const;
+    void list_edges(const ConformingMesh& mesh, TetId t, std::vector<Candidate>& out) const;
+    void sample(const ConformingMesh& mesh, const Candidate& candidate);
     void choose(double most_vertices);
     [[nodiscard]] bool are_apart(const ConformingMesh& mesh, VertexId u, VertexId v) const;
     [[nodiscard]] bool is_beside_left(const ConformingMesh& mesh, VertexId v) const;
