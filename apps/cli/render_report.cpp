@@ -141,9 +141,10 @@ std::string render_exemptions(const MeshResult& result) {
     if (!(sharpest.angle_deg > 0))
         return fmt::format("note: {} tetrahedra lie in gaps that are left and are exempt: {:.4g} degrees and R/L {:.4g} with them; --exemptions FILE lists them\n",
                            result.exemptions.size(), all.min_dihedral_angle_deg, all.max_radius_edge_ratio);
-    return fmt::format("note: {} tetrahedra miss a goal because acute angles of the input force them to, and are exempt: {:.4g} degrees and R/L {:.4g} with them; the sharpest angle is\n"
+    return fmt::format("note: {} tetrahedra miss a goal because acute angles of the input force them to{}, and are exempt: {:.4g} degrees and R/L {:.4g} with them; the sharpest angle is\n"
                        "      {:.4g} degrees at {}; --exemptions FILE lists them\n",
-                       result.exemptions.size(), all.min_dihedral_angle_deg, all.max_radius_edge_ratio, sharpest.angle_deg, describe(sharpest.feature));
+                       result.exemptions.size(), result.statistics.gaps ? " or because they lie in gaps that are left" : "", all.min_dihedral_angle_deg,
+                       all.max_radius_edge_ratio, sharpest.angle_deg, describe(sharpest.feature));
 }
 
 std::string render_given(const GivenMeshStatistics& given) {

@@ -41,7 +41,7 @@ std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::ve
         for (std::size_t i = begin; i < end; ++i) {
             const auto& c = mesh.tets().corners(order[i]);
             const TetShape shape = shape_of(mesh.point(c[0]), mesh.point(c[1]), mesh.point(c[2]), mesh.point(c[3]));
-            if (!(shape.radius_edge <= goals.max_radius_edge_ratio && shape.min_dihedral_deg >= angle)) missing[piece].push_back(i);
+            if (!(shape.radius_edge <= goals.max_radius_edge_ratio && (angle <= 0 || shape.min_dihedral_deg >= angle))) missing[piece].push_back(i);
         }
     });
     for (const std::vector<std::size_t>& piece : missing)
@@ -62,6 +62,7 @@ std::optional<GapStatistics> gaps_left(const std::vector<Exemption>& exemptions,
     const auto& left = refiner.gaps().left();
     if (!left) return std::nullopt;
     const auto tets = std::count_if(exemptions.begin(), exemptions.end(), [](const Exemption& e) { return e.angle_deg == kGapAngle; });
+    if (tets == 0) return std::nullopt;  // the goals ask for no filling
     return GapStatistics{feature_of(mesh, left->sides[0], first_number),
                          feature_of(mesh, left->sides[1], first_number),
                          left->width,

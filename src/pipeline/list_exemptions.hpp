@@ -23,7 +23,7 @@ namespace wellmesh {
 [[nodiscard]] std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
                                                      std::uint32_t first_number, Workers& workers);
 
-/// Of the gaps that were left, if any, and how many of the exemptions lie in them.
+/// Of the gaps that were left, and how many of the exemptions lie in them; nothing if none does.
 [[nodiscard]] std::optional<GapStatistics> gaps_left(const std::vector<Exemption>& exemptions, const ConformingMesh& mesh, const Refiner& refiner, std::uint32_t first_number);
 
 /// The exemptions of a mesh whose tetrahedra are about to change. Those that come out of it as they were stay exempt, under their new number; new ones
