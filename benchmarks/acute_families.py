@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes inputs with acute angles made by code (acute_inputs.py); an independent referee judges each mesh; one row an input and place.
+"""Meshes inputs with acute angles and narrow gaps made by code (acute_inputs.py, gap_inputs.py); an independent referee judges each mesh; one row an input and place.
 
     benchmarks/acute_families.py --referee JUDGE [--program build/release/bin/wellmesh] [--quick] [--family fan] [--tetgen tetgen]
 
@@ -20,6 +20,7 @@ import tempfile
 
 from acute_inputs import families
 from common import DEFAULT_PROGRAM, judge, run, tetgen
+from gap_inputs import gap_inputs
 from synthetic_domains import TRANSFORMS, Transform, moved, write_poly
 
 PLACES = {t.name: t for t in [*TRANSFORMS, Transform("rotated_1e-6", True, 0.0, 1e-6), Transform("rotated_1e6", True, 0.0, 1e6)]}
@@ -150,10 +151,11 @@ def main():
     parser.add_argument("--keep", help="folder for the inputs of rows that miss")
     parser.add_argument("--json", help="file for all rows")
     arguments = parser.parse_args()
-    chosen = [a for a in families(6 if arguments.quick else arguments.random)
+    inputs = [*families(6 if arguments.quick else arguments.random), *gap_inputs()]
+    chosen = [a for a in inputs
               if not arguments.family or any(fnmatch.fnmatch(word, p) for p in arguments.family for word in (a.family, a.name))]
     if not chosen:
-        parser.error("no input has such a name; families are " + ", ".join(dict.fromkeys(a.family for a in families(1))))
+        parser.error("no input has such a name; families are " + ", ".join(dict.fromkeys(a.family for a in inputs)))
     places = [PLACES[name] for name in arguments.place or (["as_is"] if arguments.quick else ["as_is", "rotated", "rotated_1e-6"])]
     print(f"{'':43} conformity alone    | default goals, 2 and 20 outside exemptions")
     print(f"{'input':24} {'place':12} {'in':>5} exit {'verts':>7} {'s':>6} | exit {'verts':>7} {'s':>6} {'tets':>8} {'exempt':>7} {'min dih':>7} {'R/L':>7}"

@@ -71,7 +71,7 @@ void BoundaryRefiner::enqueue_all_encroached() {
 }
 
 void BoundaryRefiner::find_encroached(const Cavity& cavity, const Placement& where, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const {
-    segments.clear();
+    DistinctEdges<Subsegment> distinct(segments);
     faces.clear();
     const TetStore& store = mesh_.tets();
     const Vec3& p = cavity.point;
@@ -89,8 +89,8 @@ void BoundaryRefiner::find_encroached(const Cavity& cavity, const Placement& whe
             if (!l.segments[e].valid()) continue;
             const VertexId a = std::min(c[kEdgeCorners[e][0]], c[kEdgeCorners[e][1]]), b = std::max(c[kEdgeCorners[e][0]], c[kEdgeCorners[e][1]]);
             if (where.carrier == CarrierKind::segment && l.segments[e].value() == where.carrier_id) continue;
-            if (std::any_of(segments.begin(), segments.end(), [&](const Subsegment& s) { return s.a == a && s.b == b; })) continue;
-            if (side_of_diametral_sphere(mesh_.point(a), mesh_.point(b), p) == Sign::positive) segments.push_back({a, b, l.segments[e]});
+            if (distinct.is_listed(edge_key(a, b))) continue;
+            if (side_of_diametral_sphere(mesh_.point(a), mesh_.point(b), p) == Sign::positive) distinct.add({a, b, l.segments[e]});
         }
         for (unsigned f = 0; f < 4; ++f) {
             if (!l.facets[f].valid() || on_carrier(l.facets[f])) continue;
@@ -101,6 +101,7 @@ void BoundaryRefiner::find_encroached(const Cavity& cavity, const Placement& whe
                 faces.push_back({fc, l.facets[f]});
         }
     }
+    distinct.finish();
 }
 
 void BoundaryRefiner::inserted(VertexId v) {
@@ -351,6 +352,11 @@ void BoundaryRefiner::poll_or_throw(FacetId f) {
     });
 }
 
+bool BoundaryRefiner::holes_may_wait() const {
+    constexpr std::size_t kVerticesPerHole = 128;
+    return lets_holes_wait && !cells_stale_ && mesh_.has_only_holes() && mesh_.broken_facets().size() * kVerticesPerHole < mesh_.steiner_vertices_ever(mesh_.broken_facets().back());
+}
+
 bool BoundaryRefiner::step() {
     if (!segments_.empty()) {
         const WaitingSegment w = segments_.front();
@@ -369,7 +375,7 @@ bool BoundaryRefiner::step() {
         split(w.s, {w.encroacher.valid() ? InsertionReason::encroachment : InsertionReason::recovery, w.encroacher});
         return true;
     }
-    if (mesh_.has_broken()) {
+    if (mesh_.has_broken() && (faces_.empty() || !holes_may_wait())) {
         repair_broken();
         return true;
     }

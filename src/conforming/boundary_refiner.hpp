@@ -76,6 +76,11 @@ public:
     void conform();
     /// Splits at most one subsegment or subface. @return false if none is waiting.
     bool step();
+    /// Holes in facets of many vertices, which are recovered as a whole, wait until there are enough of them to be worth it. Cells around them are unknown.
+    bool lets_holes_wait = false;
+    /// Is there nothing to do but to mend holes that may wait?
+    [[nodiscard]] bool only_holes_wait() const { return mesh_.has_broken() && segments_.empty() && faces_.empty() && holes_may_wait(); }
+    [[nodiscard]] bool has_holes() const { return mesh_.has_broken() || cells_stale_; }
     [[nodiscard]] bool idle() const { return segments_.empty() && faces_.empty() && idle_but_for_queues(); }
     [[nodiscard]] std::size_t waiting() const { return segments_.size() + faces_.size(); }
     /// The mesh was put back to an earlier one that conformed: what waits is of the abandoned one.
@@ -130,6 +135,7 @@ private:
     struct WaitingSegment { Subsegment s; VertexId encroacher; };
     struct WaitingFace { Subface s; VertexId encroacher; };
 
+    [[nodiscard]] bool holes_may_wait() const;
     [[nodiscard]] bool idle_but_for_queues() const { return !mesh_.has_broken() && !cells_stale_; }
     SplitOutcome split_here(const Subsegment& s, const SplitRequest& request);
     SplitOutcome split_here(const Subface& s, const SplitRequest& request);

@@ -11,6 +11,7 @@
 // then stands on such a face belongs to the cell on the other side. So the surface always passes through the point itself.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -18,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "conforming/edge_lookup.hpp"
 #include "core/checkpoint.hpp"
 #include "core/ids.hpp"
 #include "core/shared_array.hpp"
@@ -204,6 +206,14 @@ public:
     /// Facets and segments that lost a piece since the last call.
     [[nodiscard]] std::vector<FacetId> take_broken_facets();
     [[nodiscard]] std::vector<SegmentId> take_broken_segments();
+    /// Facets with a hole or more, one entry a hole; has_only_holes(): and all segments are whole.
+    [[nodiscard]] const std::vector<FacetId>& broken_facets() const { return broken_facets_; }
+    [[nodiscard]] bool has_only_holes() const { return !broken_facets_.empty() && broken_segments_.empty(); }
+    [[nodiscard]] std::size_t steiner_vertices_ever(FacetId f) const { return on_facet_[f.index()].size(); }
+    /// Does the cavity reach into what holes have left without a cell?
+    [[nodiscard]] bool reaches_hole(const Cavity& cavity) const {
+        return !forgotten_.empty() && std::any_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId t) { return cell_[t.index()] == unknown_cell(); });
+    }
     [[nodiscard]] bool has_broken() const { return !broken_facets_.empty() || !broken_segments_.empty(); }
 
     /// The subsegment or subface in the last state of the mesh, if it is one.
@@ -246,7 +256,6 @@ private:
     void fit_arrays();
     void note_carrier(VertexId v);
     class InsideObserver;
-    [[nodiscard]] bool is_segment_edge(VertexId a, VertexId b) const;
 
     ConformingMesh() = default;  // a view to be
 
@@ -272,9 +281,12 @@ private:
     // scratch of one insertion
     std::vector<CapturedFace> captured_;
     std::vector<InteriorFace> interior_;
-    std::vector<Subsegment> captured_segments_, interior_segments_;  // of the cavity's boundary; deleted by the insertion
+    std::vector<Subsegment> interior_segments_;  // deleted by the insertion
+    EdgeLookup segment_edges_;                   // of these and of the cavity's boundary
+    EdgeLookup subface_edges_;                   // of the subfaces of one facet in interior_
     std::vector<LoopEdge> loop_;
-    std::vector<std::uint64_t> rim_;  // the edges of captured faces, three each, as edge_key() has them; none where there is no loop
+    EdgeLookup loop_edges_;  // numbers in loop_
+    EdgeLookup rim_;         // the edges of captured faces; none where there is no loop
     std::vector<std::size_t> mine_, taken_;
     std::vector<FacetId> carrier_facets_;
     Hole undo_hole_;

@@ -15,9 +15,6 @@ namespace {
 
 bool same_edge(VertexId a, VertexId b, VertexId c, VertexId d) { return (a == c && b == d) || (a == d && b == c); }
 
-/// The same for both directions.
-std::uint64_t edge_key(VertexId a, VertexId b) { return std::uint64_t{std::min(a, b).value()} << 32 | std::max(a, b).value(); }
-
 /// Smallest barycentric coordinate of p in the triangle, both seen along `normal`: how deep inside it lies.
 double depth_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& normal) {
     const double area = dot(cross(b - a, c - a), normal);
@@ -48,7 +45,7 @@ void ConformingMesh::capture(const Cavity& cavity, std::vector<CapturedFace>& ca
 void ConformingMesh::collect_interior(const Cavity& cavity, const Placement& where) {
     const TetStore& tets = tri_.tets();
     interior_.clear();
-    interior_segments_.clear();
+    DistinctEdges<Subsegment> segments(interior_segments_);
     for (const TetId t : cavity.tets) {
         if (!has_labels(t)) continue;
         const TetLabels& l = labels(t);
@@ -60,11 +57,12 @@ void ConformingMesh::collect_interior(const Cavity& cavity, const Placement& whe
         for (unsigned e = 0; e < 6; ++e) {
             if (!l.segments[e].valid()) continue;
             const VertexId a = tets.corner(t, kEdgeCorners[e][0]), b = tets.corner(t, kEdgeCorners[e][1]);
-            const auto known = [&](const Subsegment& s) { return same_edge(s.a, s.b, a, b); };
-            if (std::any_of(interior_segments_.begin(), interior_segments_.end(), known)) continue;
-            if (std::none_of(captured_segments_.begin(), captured_segments_.end(), known)) interior_segments_.push_back({a, b, l.segments[e]});
+            if (!segments.is_listed(edge_key(a, b)) && !segment_edges_.contains(edge_key(a, b))) segments.add({a, b, l.segments[e]});
         }
     }
+    segments.finish();
+    for (const Subsegment& s : interior_segments_) segment_edges_.add(edge_key(s.a, s.b), 0);
+    segment_edges_.finish();
     const auto facets = facets_of(where);
     if (facets.empty()) return;
     for (std::size_t i = 0; i < captured_.size(); ++i) {
@@ -75,11 +73,6 @@ void ConformingMesh::collect_interior(const Cavity& cavity, const Placement& whe
     }
 }
 
-bool ConformingMesh::is_segment_edge(VertexId a, VertexId b) const {
-    const auto is_it = [&](const Subsegment& s) { return same_edge(s.a, s.b, a, b); };
-    return std::any_of(captured_segments_.begin(), captured_segments_.end(), is_it) || std::any_of(interior_segments_.begin(), interior_segments_.end(), is_it);
-}
-
 /// Finds the subfaces of `facet` that the point's star replaces: the ones connected, not across subsegments, to where the point lies.
 void ConformingMesh::replace_subfaces(const Cavity& cavity, const Placement& where, FacetId facet) {
     std::vector<std::size_t>&mine = mine_, &stack = taken_;
@@ -88,6 +81,10 @@ void ConformingMesh::replace_subfaces(const Cavity& cavity, const Placement& whe
     for (std::size_t i = 0; i < interior_.size(); ++i)
         if (interior_[i].facet == facet) mine.push_back(i);
     if (mine.empty()) return;
+    subface_edges_.clear();
+    for (const std::size_t i : mine)
+        for (std::size_t k = 0; k < 3; ++k) subface_edges_.add(edge_key(interior_[i].corners[k], interior_[i].corners[(k + 1) % 3]), i);
+    subface_edges_.finish();
     const auto take = [&](std::size_t i) {
         if (interior_[i].used) return;
         interior_[i].used = true;
@@ -117,18 +114,16 @@ void ConformingMesh::replace_subfaces(const Cavity& cavity, const Placement& whe
         for (std::size_t k = 0; k < 3; ++k) {
             const VertexId a = corners[(k + 1) % 3], b = corners[(k + 2) % 3];
             if (where.carrier == CarrierKind::segment && same_edge(a, b, where.a, where.b)) continue;
-            if (is_segment_edge(a, b)) {
+            if (segment_edges_.contains(edge_key(a, b))) {
                 loop_.push_back({a, b, facet});
                 continue;
             }
             bool shared = false;
-            for (const std::size_t j : mine) {
-                const auto& d = interior_[j].corners;
-                if (d == corners) continue;
-                if (std::find(d.begin(), d.end(), a) == d.end() || std::find(d.begin(), d.end(), b) == d.end()) continue;
+            subface_edges_.for_each(edge_key(a, b), [&](std::size_t j) {
+                if (interior_[j].corners == corners) return;
                 shared = true;
                 take(j);
-            }
+            });
             if (!shared) loop_.push_back({a, b, facet});
         }
     }
@@ -165,7 +160,7 @@ bool ConformingMesh::note_destroyed(const Placement& where) {
         if (where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b)) broken_segments_.push_back(s.segment);
     // An edge of the loop that is a destroyed subsegment carries no face of the star: the surface is open there.
     for (const LoopEdge& e : loop_)
-        if (std::find(rim_.begin(), rim_.end(), edge_key(e.a, e.b)) == rim_.end()) broken_facets_.push_back(e.facet);
+        if (!rim_.contains(edge_key(e.a, e.b))) broken_facets_.push_back(e.facet);
     return broken_facets_.size() != before;
 }
 
@@ -173,7 +168,7 @@ bool ConformingMesh::note_destroyed(const Placement& where) {
 bool ConformingMesh::breaks_something(const Placement& where) const {
     const auto is_lost = [](const InteriorFace& f) { return !f.used && f.boundary == InteriorFace::kNotOnBoundary; };
     const auto is_cut = [&](const Subsegment& s) { return where.carrier != CarrierKind::segment || !same_edge(s.a, s.b, where.a, where.b); };
-    const auto is_open = [&](const LoopEdge& e) { return std::find(rim_.begin(), rim_.end(), edge_key(e.a, e.b)) == rim_.end(); };
+    const auto is_open = [&](const LoopEdge& e) { return !rim_.contains(edge_key(e.a, e.b)); };
     return std::any_of(interior_.begin(), interior_.end(), is_lost) || std::any_of(interior_segments_.begin(), interior_segments_.end(), is_cut) ||
            std::any_of(loop_.begin(), loop_.end(), is_open);
 }
@@ -181,12 +176,14 @@ bool ConformingMesh::breaks_something(const Placement& where) const {
 /// Reads everything that the insertion needs to know about the cavity, and finds how the surface will run.
 void ConformingMesh::plan(const Cavity& cavity, const Placement& where) {
     capture(cavity, captured_);
-    captured_segments_.clear();
+    segment_edges_.clear();
     for (const CapturedFace& c : captured_)
         for (std::size_t k = 0; k < 3; ++k)
-            if (c.segments[k].valid()) captured_segments_.push_back({c.corners[(k + 1) % 3], c.corners[(k + 2) % 3], c.segments[k]});
+            if (c.segments[k].valid()) segment_edges_.add(edge_key(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3]), 0);
+    segment_edges_.finish();
     loop_.clear();
     rim_.clear();
+    loop_edges_.clear();
     interior_.clear();
     interior_segments_.clear();
     if (std::none_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId t) { return has_labels(t); })) return;
@@ -194,7 +191,10 @@ void ConformingMesh::plan(const Cavity& cavity, const Placement& where) {
     for (const FacetId f : facets_of(where)) replace_subfaces(cavity, where, f);
     if (loop_.empty()) return;
     for (const CapturedFace& c : captured_)
-        for (std::size_t k = 0; k < 3; ++k) rim_.push_back(edge_key(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3]));
+        for (std::size_t k = 0; k < 3; ++k) rim_.add(edge_key(c.corners[(k + 1) % 3], c.corners[(k + 2) % 3]), 0);
+    rim_.finish();
+    for (std::size_t i = 0; i < loop_.size(); ++i) loop_edges_.add(edge_key(loop_[i].a, loop_[i].b), i);
+    loop_edges_.finish();
 }
 
 bool ConformingMesh::would_break(const Cavity& cavity, const Placement& where) {
@@ -223,7 +223,7 @@ void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& w
         return;
     }
     if (!std::exchange(planned_, false)) plan(cavity, where);
-    const bool leaks = note_destroyed(where);
+    const bool reaches = reaches_hole(cavity), leaks = note_destroyed(where) || reaches;
     const bool splits = where.carrier == CarrierKind::segment;
     for (const TetId t : cavity.tets) drop_labels(t);
 
@@ -248,8 +248,7 @@ void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& w
             const VertexId a = c.corners[(k + 1) % 3], b = c.corners[(k + 2) % 3];
             if (c.segments[k].valid() && !(splits && same_edge(a, b, where.a, where.b)))
                 labels_for_writing(t).segments[kEdgeOf[tets.find_corner(t, a)][tets.find_corner(t, b)]] = c.segments[k];
-            for (const LoopEdge& e : loop_)
-                if (edge_key(e.a, e.b) == rim_[3 * i + k]) labels_for_writing(t).facets[tets.find_corner(t, c.corners[k])] = e.facet;
+            loop_edges_.for_each(edge_key(a, b), [&](std::size_t e) { labels_for_writing(t).facets[tets.find_corner(t, c.corners[k])] = loop_[e].facet; });
         }
         if (splits)
             for (const VertexId end : {where.a, where.b}) {

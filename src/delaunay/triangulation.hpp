@@ -170,6 +170,8 @@ public:
     /// Of a view: has anything failed since forget_leaving() because it would have left the zone, or found no room? On the whole mesh nothing does.
     [[nodiscard]] bool left_zone() const { return left_zone_; }
     void forget_leaving() { left_zone_ = false; }
+    /// May a tetrahedron be looked at, that may be gone or another by now? Views only look at what is in their zones.
+    [[nodiscard]] bool may_look_at(TetId t) const { return !is_view() || is_mine(t); }
     /// For what a view can't do for other reasons.
     void leave_zone() { left_zone_ = is_view(); }
     /// Can there be so many tetrahedra more? Only views are limited.

@@ -193,7 +193,7 @@ private:
         require_room(options_.limits, mesh.vertex_count(), guard_.stage());
         const bool acute = !valid.acute_features.empty();
         // Where the input is acute features copy each other anyway.
-        const double enough = most_for_gaps(options_.limits, 0);
+        const double enough = most_for_gaps(options_.limits, static_cast<double>(mesh.vertex_count()));
         AcuteGeometry acute_geometry(valid, !acute && options_.mode != Mode::certified && vertices_for_gaps(valid, enough) > enough);
         if (acute_geometry.copies()) guard_.set_ceiling(40 * mesh.vertex_count() + 20'000);
         BoundaryRefiner boundary(mesh, guard_, options_.seed, acute_geometry);
@@ -218,11 +218,11 @@ private:
         const bool certified = options_.mode == Mode::certified;
         if (certified) set_sliver_rule(refiner, options_);
         else prepare_refinement(refiner, boundary, options_);
-        const double vertices = static_cast<double>(mesh.vertex_count()), for_size = 4 * std::min(refiner.sizes().expected_vertices(), 4e9);
-        if (!certified) refiner.leave_gaps(most_for_gaps(options_.limits, 40 * vertices + 300'000 + for_size));
+        const double vertices = static_cast<double>(mesh.vertex_count()), for_size = std::min(refiner.sizes().expected_vertices(), 4e9);
+        if (!certified) refiner.leave_gaps(most_for_gaps(options_.limits, vertices, for_size));
         // Where two edges cross with no more than a left gap between them copies may chase each other.
         const double ordinary = refiner.gaps().any() ? 10 * vertices + 20'000 : 40 * vertices + 300'000;
-        if (acute_geometry.copies()) guard_.set_ceiling(static_cast<std::uint64_t>(ordinary + for_size + 4 * refiner.gaps().expected_vertices()));
+        if (acute_geometry.copies()) guard_.set_ceiling(static_cast<std::uint64_t>(ordinary + 4 * for_size + 4 * refiner.gaps().expected_vertices()));
         RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
         timed(Stage::refine, [&] {
             // The published ways have no seeds: they begin with what Delaunay refinement makes.

@@ -75,10 +75,9 @@ void refuse_hopeless(const Limits& limits, double expected) {
                                     expected, expected * kBytesPerVertex / (1 << 30), static_cast<double>(*memory) / (1 << 30)));
 }
 
-double most_for_gaps(const Limits& limits, double ordinary) {
-    constexpr double kHalfAMinute = 3e6;  // vertices, 20 million tetrahedra
-    const double most = std::max(ordinary, kHalfAMinute);
-    return limits.max_vertices ? std::min(most, static_cast<double>(*limits.max_vertices)) : most;
+double most_for_gaps(const Limits& limits, double vertices, double for_size) {
+    constexpr double kFewSeconds = 1e5;
+    return limits.max_vertices ? static_cast<double>(*limits.max_vertices) : kFewSeconds + 10 * std::max(vertices, for_size);
 }
 
 bool is_refuted(const Certificate& certificate) { return std::any_of(certificate.claims.begin(), certificate.claims.end(), is_broken); }

@@ -32,8 +32,9 @@ void require_room(const Limits& limits, std::size_t vertices, Stage stage);
 /// @param expected  vertices. @throws MeshError{mesh_too_large}
 void refuse_hopeless(const Limits& limits, double expected);
 
-/// Vertices that may be spent on gaps between features of the input; gaps that would take more are left. @param ordinary  a bound on those of all else
-[[nodiscard]] double most_for_gaps(const Limits& limits, double ordinary);
+/// Vertices that may be spent on gaps between features of the input: the user's limit, or else ten times what the mesh has anyway; gaps that would take more
+/// are left. @param vertices  of the conforming mesh, or of the input  @param for_size  that the sizes ask for
+[[nodiscard]] double most_for_gaps(const Limits& limits, double vertices, double for_size = 0);
 
 /// Whether a claim about anything but goals is.
 [[nodiscard]] bool is_refuted(const Certificate& certificate);

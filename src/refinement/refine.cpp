@@ -154,7 +154,7 @@ RunGuard::Verdict Refiner::refine() {
     split_sized_boundary();
     enqueue_all();
     listen();
-    keeps_last_ = max_vertices_.has_value() || boundary_.acute().any();
+    keeps_last_ = max_vertices_.has_value() || boundary_.acute().copies();
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     for (unsigned cascades = 0;; ++cascades) {
         try {
@@ -184,6 +184,7 @@ void Refiner::forget_waiting() {
     by_radius_edge_.clear();
     by_sliver_.clear();
     squared_size_slack_ = 1;
+    beside_holes_.clear();
     boundary_.forget_waiting();
 }
 
@@ -198,21 +199,33 @@ void Refiner::keep_last() {
 }
 
 RunGuard::Verdict Refiner::drain() {
+    // Filling gaps breaks the facets on their sides all the time.
+    constexpr double kManyForGaps = 1000;
+    boundary_.lets_holes_wait = gaps_.expected_vertices() > kManyForGaps && !strict() && !boundary_.recorder;
+    const auto step = [&] {
+        judging_ = sliver_rule_.has_value();
+        boundary_.step();
+        if (!boundary_.has_holes()) requeue_beside_holes();
+    };
     while (true) {
-        if (!boundary_.idle()) {
-            judging_ = sliver_rule_.has_value();
-            boundary_.step();
+        if (!boundary_.idle() && !boundary_.only_holes_wait()) {
+            step();
             continue;
         }
-        if (keeps_last_) keep_last();
+        if (keeps_last_ && boundary_.idle()) keep_last();
         report_milestones();
         if (!by_sliver_.empty() && mesh_.vertex_count() >= sliver_budget_) {
             sliver_budget_spent_ = true;
             by_sliver_.clear();
         }
-        if (by_size_.empty() && by_radius_edge_.empty() && by_sliver_.empty()) return RunGuard::Verdict::go_on;
+        if (by_size_.empty() && by_radius_edge_.empty() && by_sliver_.empty()) {
+            if (boundary_.idle()) return RunGuard::Verdict::go_on;
+            step();
+            continue;
+        }
         const RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), by_size_.size() + by_radius_edge_.size() + by_sliver_.size());
         if (verdict != RunGuard::Verdict::go_on) {
+            while (!boundary_.idle()) step();
             by_size_.clear();
             by_radius_edge_.clear();
             by_sliver_.clear();
@@ -227,12 +240,22 @@ RunGuard::Verdict Refiner::drain() {
         if (fault == Fault::none || is_forced(e.tet, fault) || given_up_.contains(e.fingerprint)) continue;
         splitting_ = e.fingerprint;
         const std::size_t vertices_before = mesh_.vertex_count();
+        reached_hole_ = false;
         if (fault == Fault::flat) split_flat(e.tet);
         else process(e.tet, fault == Fault::size ? InsertionReason::size : fault == Fault::sliver ? InsertionReason::sliver : InsertionReason::radius_edge);
         // It may have survived when the boundary was split instead: then it waits again. If nothing could be done it is given up.
-        if (mesh_.vertex_count() != vertices_before && mesh_.tets().is_finite(e.tet) && BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) == e.fingerprint && mesh_.in_domain(e.tet)) {
+        if (reached_hole_) beside_holes_.push_back(e);
+        else if (mesh_.vertex_count() != vertices_before && mesh_.tets().is_finite(e.tet) && BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) == e.fingerprint && mesh_.in_domain(e.tet)) {
             queue.push(e.tet, mesh_.tets().corners(e.tet), badness);
         }
+    }
+}
+
+/// What could not be split before the boundary was whole again.
+void Refiner::requeue_beside_holes() {
+    for (const BadTetQueue::Entry& e : std::exchange(beside_holes_, {})) {
+        if (!mesh_.tets().is_live(e.tet) || !mesh_.tets().is_finite(e.tet) || BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) != e.fingerprint) continue;
+        if (mesh_.in_domain(e.tet)) enqueue({e.tet});
     }
 }
 

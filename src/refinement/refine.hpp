@@ -100,6 +100,7 @@ private:
     [[nodiscard]] bool may_work_in_zones() const { return !max_vertices_ && !sliver_rule_ && given_up_.empty() && !gaps_.any() && boundary_.may_work_in_zones(); }
     RunGuard::Verdict drain();
     void keep_last();
+    void requeue_beside_holes();
     void enqueue(const std::vector<TetId>& tets);
     void enqueue(TetId t, Fault fault, double badness);
     void enqueue_all();
@@ -153,6 +154,8 @@ private:
     double squared_size_slack_ = 1;
     unsigned candidates_ = 1;
     bool judging_ = false;
+    bool reached_hole_ = false;  // the tetrahedron at hand can't be split before the boundary is whole again
+    std::vector<BadTetQueue::Entry> beside_holes_;  // such ones
     std::uint32_t splitting_ = 0;                 // the tetrahedron at hand, by its fingerprint
     std::unordered_set<std::uint32_t> given_up_;  // what set off a cascade
     BadTetQueue by_size_, by_radius_edge_, by_sliver_;

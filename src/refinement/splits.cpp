@@ -200,6 +200,8 @@ void Refiner::insert_off_centre(TetId t, const Vec3& centre, InsertionReason rea
 void Refiner::process_centre(TetId t, InsertionReason reason, const Vec3& centre, double radius) {
     const Placement where = Placement::in_cell(mesh_.cell(t));
     if (!mesh_.triangulation().find_conflict_cavity(centre, t, cavity_)) return;
+    reached_hole_ = mesh_.reaches_hole(cavity_);
+    if (reached_hole_) return;
     boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
     if (!encroached_segments_.empty() || !encroached_faces_.empty()) {
         const InsertionReason why = reason == InsertionReason::size     ? InsertionReason::boundary_by_size

@@ -89,8 +89,7 @@ void ThinGaps::list_edges(const ConformingMesh& mesh, TetId t, std::vector<Candi
         const Vec3 &a = mesh.point(c[kEdgeCorners[e][0]]), &b = mesh.point(c[kEdgeCorners[e][1]]);
         const double length = distance(a, b);
         for (const unsigned k : {unsigned{kEdgeCorners[5 - e][0]}, unsigned{kEdgeCorners[5 - e][1]}}) {
-            const CarrierKind carrier = mesh.info(c[k]).carrier;
-            if (carrier == CarrierKind::region || carrier == CarrierKind::input_vertex) continue;
+            if (mesh.info(c[k]).carrier == CarrierKind::region) continue;
             const double off = norm(cross(mesh.point(c[k]) - a, b - a)) / length;
             if (length > kSlender * off) out.push_back({vertices_beside_segment(length, off / kSameGap), off, t, e, c[k]});
         }
@@ -104,8 +103,10 @@ void ThinGaps::sample(const ConformingMesh& mesh, const Candidate& candidate) {
     if (candidate.far.valid()) {
         const VertexId a = c[kEdgeCorners[candidate.at][0]], b = c[kEdgeCorners[candidate.at][1]];
         if (!are_apart(mesh, a, candidate.far) && !are_apart(mesh, b, candidate.far)) return;
-        const double width = size(0.5 * (mesh.point(a) + mesh.point(b)));
-        if (candidate.height < kSameGap * width) samples_.push_back({width, vertices_beside_segment(distance(mesh.point(a), mesh.point(b)), width), a, candidate.far});
+        const std::array ends{mesh.point(a), mesh.point(b)};
+        sample_gap(size, ends, {size(ends[0]), size(ends[1])}, [&](double length, double width) {
+            if (candidate.height < kSameGap * width) samples_.push_back({width, vertices_beside_segment(length, width), a, candidate.far});
+        });
         return;
     }
     const VertexId far = c[candidate.at];

@@ -16,12 +16,18 @@ inline std::uint64_t key_of(TetStore::Corners c) {
     return mix64(mix64(c[0].value(), c[1].value()), mix64(c[2].value(), c[3].value()));
 }
 
-/// The domain tetrahedron with these corners, or an invalid id.
-inline TetId find_tet(ConformingMesh& mesh, TetStore::Corners corners) {
+/// The domain tetrahedron with these corners, or an invalid id. @param last  its id when it was last seen: mostly it still is, and the stars of all
+/// its corners may be large
+inline TetId find_tet(ConformingMesh& mesh, TetStore::Corners corners, TetId last = {}) {
     for (const VertexId v : corners)
         if (!mesh.triangulation().is_inserted(v)) return {};
     // The star of the first is searched: the youngest's, since the oldest may hold a great part of the mesh.
     std::sort(corners.begin(), corners.end(), std::greater<>());
+    if (last.valid() && last.index() < mesh.tets().slots() && mesh.triangulation().may_look_at(last) && mesh.tets().is_finite(last) && mesh.in_domain(last)) {
+        TetStore::Corners now = mesh.tets().corners(last);
+        std::sort(now.begin(), now.end(), std::greater<>());
+        if (now == corners) return last;
+    }
     const TetFace face = mesh.triangulation().find_face(corners[0], corners[1], corners[2]);
     if (!face.valid()) return {};
     for (const TetFace side : {face, mesh.tets().across(face)})

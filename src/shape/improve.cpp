@@ -75,7 +75,7 @@ void ShapeImprover::leave_forced_alone() {
     leaves_forced_ = true;
     if (refiner_.may_excuse()) mover_.excuses = [this](TetId t) { return judge_.keeps_size(t) && is_left_alone(t); };
     std::erase_if(left(), [&](const Bad& b) {
-        const TetId t = find_tet(mesh_, b.corners);
+        const TetId t = find_tet(mesh_, b.corners, b.last);
         return !t.valid() || is_left_alone(t);
     });
 }
@@ -87,7 +87,7 @@ bool ShapeImprover::try_last_resort(const Bad& bad, const Corners& freest_first,
             mending_.touch(mover_.changed());
             return true;
         }
-    const TetId t = find_tet(mesh_, bad.corners);
+    const TetId t = find_tet(mesh_, bad.corners, bad.last);
     if (!t.valid() || !insertion_.insert(t, bad.badness - kWorthwhile).valid()) return false;
     mending_.touch(insertion_.changed());
     return true;
@@ -177,7 +177,7 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
         if (b.badness <= cosine) break;
         if (given_up_.contains(key_of(b.corners))) continue;
         if (std::any_of(b.corners.begin(), b.corners.end(), [&](VertexId v) { return marked_[v.index()] == stamp; })) continue;
-        const TetId t = find_tet(mesh_, b.corners);
+        const TetId t = find_tet(mesh_, b.corners, b.last);
         if (!t.valid()) continue;
         for (const VertexId v : b.corners) marked_[v.index()] = stamp;
         ++splits_;

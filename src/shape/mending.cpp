@@ -63,7 +63,7 @@ bool Mending::is_bad(TetId t, double& how) const {
 
 Bad Mending::listed(TetId t, double how) const {
     const TetStore::Corners& corners = mesh_.tets().corners(t);
-    return {how, corners, blocks_.of(mesh_.point(corners[0]))};
+    return {how, corners, t, blocks_.of(mesh_.point(corners[0]))};
 }
 
 void Mending::collect(Workers& workers) {
@@ -115,7 +115,7 @@ bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
         Bad bad = heap_.back();
         heap_.pop_back();
         mesh_.triangulation().forget_leaving();
-        const TetId t = find_tet(mesh_, bad.corners);
+        const TetId t = find_tet(mesh_, bad.corners, bad.last);
         if (mesh_.triangulation().left_zone() || (t.valid() && must_wait && must_wait(t))) {
             outside_.push_back(bad);
             continue;
@@ -136,7 +136,7 @@ bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
 
 void Mending::end_pass() {
     std::erase_if(left_, [&](Bad& b) {
-        const TetId t = find_tet(mesh_, b.corners);
+        const TetId t = find_tet(mesh_, b.corners, b.last);
         if (!t.valid()) return true;
         b.badness = badness(t);
         return b.badness <= judge_.goal();
@@ -162,7 +162,7 @@ Mending::Outcome Mending::mend(const Bad& bad, unsigned samples) {
         Tried& tried = tried_[v.index()];
         if (tried.when < touched_[v.index()]) tried = {};
         if (tried.failures >= kTriesUntouched || (tried.failures > 0 && tried.pass == pass_)) continue;
-        const TetId t = find_tet(mesh_, bad.corners);
+        const TetId t = find_tet(mesh_, bad.corners, bad.last);
         if (t.valid() && mover_.move(v, t, judge_.goal(), samples)) {
             touch(mover_.changed());
             return Outcome::done;

@@ -21,6 +21,7 @@ namespace wellmesh {
 struct Bad {
     double badness = 0;
     TetStore::Corners corners{};
+    TetId last{};             // its id when it was listed
     std::uint32_t block = 0;  // of space
     friend bool operator<(const Bad& a, const Bad& b) { return a.badness != b.badness ? a.badness < b.badness : b.corners < a.corners; }
 };

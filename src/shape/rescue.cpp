@@ -34,7 +34,7 @@ RunGuard::Verdict ShapeImprover::rescue() {
         target = key_of(left()[i].corners);
         for (const VertexId v : freest_first(mesh_, left()[i].corners)) {
             verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), left().size() - i);
-            if (verdict != RunGuard::Verdict::go_on || !find_tet(mesh_, left()[i].corners).valid()) break;
+            if (verdict != RunGuard::Verdict::go_on || !find_tet(mesh_, left()[i].corners, left()[i].last).valid()) break;
             if (mesh_.info(v).carrier != CarrierKind::input_vertex && (chains_.shove(v, kShoves) || chains_.dissolve(v))) break;
         }
     }
@@ -54,7 +54,7 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
     for (unsigned r = 0; r < kGradings && !left().empty() && verdict == RunGuard::Verdict::go_on; ++r) {
         std::vector<TetId> stuck;
         for (const Bad& b : left())
-            if (const TetId t = find_tet(mesh_, b.corners); t.valid()) stuck.push_back(t);
+            if (const TetId t = find_tet(mesh_, b.corners, b.last); t.valid()) stuck.push_back(t);
         const ConformingMesh previous = mesh_;
         try {
             verdict = refiner_.grade_afresh(stuck);

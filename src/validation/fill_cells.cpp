@@ -16,8 +16,8 @@ namespace {
 
 class CellFiller {
 public:
-    CellFiller(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, double touching, Report& report)
-        : input_(input), soup_(soup), map_(map), lines_(lines), touching_(touching), report_(report), plc_(report.plc()), cells_(map.size()), is_hole_(map.size(), 0), has_seed_(map.size(), 0) {}
+    CellFiller(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, const Rounding& rounding, Report& report)
+        : input_(input), soup_(soup), map_(map), lines_(lines), rounding_(rounding), report_(report), plc_(report.plc()), cells_(map.size()), is_hole_(map.size(), 0), has_seed_(map.size(), 0) {}
 
     std::vector<ValidCell> run() {
         for (std::size_t c = 0; c < map_.size(); ++c) cells_[c].volume = map_.volume[c];
@@ -31,7 +31,7 @@ public:
     }
 
 private:
-    [[nodiscard]] std::optional<std::uint32_t> touched_triangle(const Vec3& p) const;
+    [[nodiscard]] std::optional<std::uint32_t> touched_triangle(const Vec3& p, double reach) const;
     [[nodiscard]] std::optional<std::uint32_t> cell_at(const Vec3& p, std::size_t number, const std::string& what);
     void place_hole(std::size_t h);
     void apply_fill_rule();
@@ -43,22 +43,22 @@ private:
     const Soup& soup_;
     const CellMap& map_;
     const LineQuery& lines_;
-    double touching_;
+    const Rounding& rounding_;
     Report& report_;
     const Plc& plc_;
     std::vector<ValidCell> cells_;
     std::vector<char> is_hole_, has_seed_;
 };
 
-/// The first triangle within touching_ of p.
-std::optional<std::uint32_t> CellFiller::touched_triangle(const Vec3& p) const {
+/// The first triangle within `reach` of p.
+std::optional<std::uint32_t> CellFiller::touched_triangle(const Vec3& p, double reach) const {
     for (std::uint32_t t = 0; t < soup_.triangles.size(); ++t) {
         const auto corner = [&](std::size_t i) -> const Vec3& { return input_.points[soup_.triangles[t].v[i].index()]; };
         Box box;
         for (std::size_t i = 0; i < 3; ++i) box.add(corner(i));
-        const bool near = p.x >= box.low.x - touching_ && p.x <= box.high.x + touching_ && p.y >= box.low.y - touching_ && p.y <= box.high.y + touching_ &&
-                          p.z >= box.low.z - touching_ && p.z <= box.high.z + touching_;
-        if (near && distance_to_triangle(p, corner(0), corner(1), corner(2)) <= touching_) return t;
+        const bool near = p.x >= box.low.x - reach && p.x <= box.high.x + reach && p.y >= box.low.y - reach && p.y <= box.high.y + reach &&
+                          p.z >= box.low.z - reach && p.z <= box.high.z + reach;
+        if (near && distance_to_triangle(p, corner(0), corner(1), corner(2)) <= reach) return t;
     }
     return std::nullopt;
 }
@@ -70,11 +70,17 @@ std::optional<std::uint32_t> CellFiller::cell_at(const Vec3& p, std::size_t numb
         return std::nullopt;
     }
     const auto place = lines_.locate(p);
-    if (const auto on = place.on ? place.on : touched_triangle(p)) {
-        const std::uint32_t facet = input_.facets[soup_.triangles[*on].facet].source;
+    const auto facet_of = [&](std::uint32_t triangle) { return input_.facets[soup_.triangles[triangle].facet].source; };
+    if (const auto on = place.on ? place.on : touched_triangle(p, rounding_.ulps(Rounding::kUlps))) {
+        const std::uint32_t facet = facet_of(*on);
         report_.add(DefectKind::seed_on_facet, Severity::error, {{EntityKind::region, number, p}, report_.facet(facet, p)},
                     fmt::format("{} at {} lies {} {}: move it into a cell", what, format_point(p), place.on ? "exactly on" : "within rounding on", report_.name_facet(facet)));
         return std::nullopt;
+    }
+    if (const auto near = touched_triangle(p, rounding_.on_edge())) {
+        const std::uint32_t facet = facet_of(*near);
+        report_.add(DefectKind::seed_on_facet, Severity::warning, {{EntityKind::region, number, p}, report_.facet(facet, p)},
+                    fmt::format("{} at {} is as near {} as the digits of the file may be off: it is taken as it is", what, format_point(p), report_.name_facet(facet)));
     }
     return place.sees ? map_.cell_of_side[*place.sees] : 0;
 }
@@ -188,8 +194,8 @@ Vec3 CellFiller::point_inside(std::uint32_t cell) const {
 
 }  // namespace
 
-std::vector<ValidCell> fill_cells(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, double touching, Report& report) {
-    return CellFiller(input, soup, map, lines, touching, report).run();
+std::vector<ValidCell> fill_cells(const CleanInput& input, const Soup& soup, const CellMap& map, const LineQuery& lines, const Rounding& rounding, Report& report) {
+    return CellFiller(input, soup, map, lines, rounding, report).run();
 }
 
 }  // namespace wellmesh

@@ -26,8 +26,9 @@ double vertices_for_gaps(const ValidPlc& plc, double enough) {
         }
     for (const ValidSegment& s : plc.segments) {
         const Vec3 &a = plc.vertices[s.ends[0].index()], &b = plc.vertices[s.ends[1].index()];
-        const double length = distance(a, b), width = size(0.5 * (a + b));
-        if (length > kSlender * width) sum += vertices_beside_segment(length, width);
+        sample_gap(size, std::array{a, b}, std::array{at_vertex[s.ends[0].index()], at_vertex[s.ends[1].index()]}, [&](double length, double width) {
+            if (length > kSlender * width) sum += vertices_beside_segment(length, width);
+        });
         if (sum > enough) return sum;
     }
     return sum;

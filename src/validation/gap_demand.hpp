@@ -49,6 +49,21 @@ void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 3>& corners
     sample_gap(size, {corners[k], middle, corners[j]}, {widths[k], width, widths[j]}, emit, fewer);
 }
 
+/// The same for a segment. @param widths  at its ends  @param emit  (length, width) of a piece
+template <class Emit>
+void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 2>& ends, const std::array<double, 2>& widths, Emit&& emit, Halvings halvings = {2, 12}) {
+    const Vec3 middle = 0.5 * (ends[0] + ends[1]);
+    const double width = size(middle), length = distance(ends[0], ends[1]), least = std::min({width, widths[0], widths[1]});
+    const bool varies = std::max({width, widths[0], widths[1]}) > 2 * least;
+    if (halvings.most == 0 || !(varies || halvings.least > 0) || !(length > least)) {
+        emit(length, width);
+        return;
+    }
+    const Halvings fewer{halvings.least > 0 ? halvings.least - 1 : 0, halvings.most - 1};
+    sample_gap(size, std::array{ends[0], middle}, std::array{widths[0], width}, emit, fewer);
+    sample_gap(size, std::array{middle, ends[1]}, std::array{width, widths[1]}, emit, fewer);
+}
+
 /// Vertices that filling all narrow gaps of a complex takes, gaps outside the domain included; or any number above `enough` that they take at least.
 [[nodiscard]] double vertices_for_gaps(const ValidPlc& plc, double enough);
 

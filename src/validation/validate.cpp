@@ -83,7 +83,7 @@ void ValidPlcBuilder::run() {
     const LineQuery lines(input.points, soup.triangles);
     const CellMap map = find_cells(input.points, soup.triangles, edges, lines);
     pass(checkpoint);
-    out.cells = fill_cells(input, soup, map, lines, rounding.on_edge(), report);
+    out.cells = fill_cells(input, soup, map, lines, rounding, report);
     if (out.cells.size() == 1) find_open_edges(Severity::warning);  // it encloses nothing: where is it open?
     attach_cells(map);
     if (!report.has_errors()) drop_outside(lines, map);
