@@ -73,7 +73,7 @@ Outcome seeded_and_refined(const Plc& plc, double edges_per_diagonal, unsigned t
     const auto volumes = s.staged->cell_volumes();
     LatticeSeeder(s.mesh(), s.staged->boundary, s.staged->guard, s.refiner->sizes(), *s.workers).seed();
     EXPECT_TRUE(s.staged->boundary.idle());
-    if (!kSanitized) EXPECT_EQ(s.staged->problem(true), "");
+    if (!kSanitized) { EXPECT_EQ(s.staged->problem(true), ""); }
     EXPECT_GE(zones_for(s.mesh(), *s.refiner), 2U);
     EXPECT_EQ(s.refiner->refine(), RunGuard::Verdict::go_on);
     EXPECT_EQ(s.staged->problem(true), "");
