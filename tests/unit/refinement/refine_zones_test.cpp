@@ -2,6 +2,7 @@
 // Boundary splitting, seeding and refinement in zones: the same mesh for any number of threads, and whatever ends a run ends it there, too.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -139,6 +140,8 @@ TEST(RefineInZones, TimeEndsItWithAMeshThatConforms) {
         staged.guard = RunGuard(limits, staged.control);
         staged.guard.set_conforming();
         EXPECT_EQ(f.refiner->refine(), RunGuard::Verdict::out_of_time);
+        EXPECT_GT(f.refiner->statistics().insertions, 0U);
+        EXPECT_LT(f.refiner->statistics().insertions, 5000U);  // zones do not go on to their end
         EXPECT_TRUE(staged.boundary.idle());
         EXPECT_EQ(staged.problem(true), "");
     }
@@ -161,14 +164,14 @@ TEST(RefineInZones, LimitedVerticesAreForOneThread) {
 
 /// Views of two zones, and a circumcentre inside of one to insert.
 struct Views {
-    Staged s{cube(), kSanitized ? 20.0 : 40.0, 1};
+    Staged s;
     ZoneViews parts;
     std::vector<ConformingMesh> views;
-    explicit Views(const ConformingMesh::ZoneRoom& room) {
+    explicit Views(const ConformingMesh::ZoneRoom& room, const Plc& plc = cube()) : s(plc, kSanitized ? 20.0 : 40.0, 1) {
         EXPECT_EQ(s.refiner->refine(), RunGuard::Verdict::go_on);
         std::vector<Vec3> sample;
         for (std::size_t v = 0; v < s.mesh().vertex_slots(); ++v) sample.push_back(s.mesh().point(VertexId{v}));
-        views = s.mesh().split(*s.workers, Zones(sample, 2, 0), room, parts);
+        views = s.mesh().split(*s.workers, Zones(sample, 2, 1), room, parts);  // oblique: no facet is between them
     }
     /// Inserts circumcentres in a zone, as many as it takes. @return how many it took
     std::size_t insert(std::size_t zone, std::size_t most) {
@@ -210,6 +213,34 @@ TEST(Views, HaveNoRoomWithoutTetrahedra) {
     const std::size_t count = v.insert(0, 100);
     EXPECT_GT(count, 0U);
     EXPECT_LT(count, 20U);
+    v.s.mesh().join(v.views);
+    EXPECT_EQ(v.s.staged->problem(false), "");
+}
+
+/// The cavities of points just beside the facet between two cells reach through it.
+TEST(Views, LeaveWhatWouldBreakTheBoundary) {
+    Views v({1000, 100}, cube_with_internal_facet());
+    std::size_t refused = 0;
+    for (std::size_t i = 0; i < v.parts.zone_of_tet.size(); ++i) {
+        const TetId t{i};
+        if (v.parts.zone_of_tet[i] == ZoneViews::kNone) continue;
+        ConformingMesh& view = v.views[v.parts.zone_of_tet[i]];
+        if (!view.tets().is_finite(t) || !view.in_domain(t) || !view.has_labels(t)) continue;
+        for (unsigned f = 0; f < 4; ++f) {
+            if (!view.labels(t).facets[f].valid()) continue;
+            const auto c = view.tets().face_corners(TetFace{t, f});
+            const Vec3 centre = (1.0 / 3) * (view.point(c[0]) + view.point(c[1]) + view.point(c[2]));
+            Triangulation& tri = view.triangulation();
+            tri.forget_leaving();
+            Cavity cavity;
+            if (!tri.find_conflict_cavity(centre + 0.01 * (view.point(view.tets().corner(t, f)) - centre), t, cavity) || tri.left_zone()) continue;
+            if (std::none_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId u) { return view.in_domain(u) && view.cell(u) != view.cell(t); })) continue;
+            EXPECT_FALSE(view.may_insert(cavity, Placement::in_cell(view.cell(t))));
+            EXPECT_TRUE(tri.left_zone());
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 20U);
     v.s.mesh().join(v.views);
     EXPECT_EQ(v.s.staged->problem(false), "");
 }
