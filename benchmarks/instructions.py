@@ -8,6 +8,7 @@ Exit status 1 if a count is above the committed one by more than the tolerance, 
 was made by another compiler than the file's, or this processor lacks the vectors that the file's had: then nothing can be compared, and that is said.
 """
 import argparse
+import concurrent.futures
 import json
 import math
 import os
@@ -71,7 +72,7 @@ def count(program, arguments, function, folder):
     """Instructions in millions, and why there are none."""
     words = [os.path.join(folder, a) if a.endswith((".node", ".poly")) else a for a in arguments]
     if words[0] == "mesh":
-        words += ["-o", os.path.join(folder, "out.mesh"), "--quiet"]
+        words += ["-o", os.path.join(folder, re.sub(r"\W", "", function) + ".mesh"), "--quiet"]
     # What is switched on at a call is counted in the calling thread only: with more of them the count would depend on the machine's cores.
     words += ["--threads", "1"]
     result = run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", f"--toggle-collect={function}", program, *words], 300)
@@ -106,8 +107,10 @@ def main():
     counts, bad = {}, False
     with tempfile.TemporaryDirectory() as folder:
         write_inputs(folder)
-        for name, (words, function) in WORKLOADS.items():
-            counts[name], why = count(arguments.program, words, function, folder)
+        # Counts don't depend on what else runs.
+        pool = concurrent.futures.ThreadPoolExecutor(os.cpu_count())
+        found = pool.map(lambda workload: count(arguments.program, *workload, folder), WORKLOADS.values())
+        for name, (counts[name], why) in zip(WORKLOADS, found):
             if counts[name] is None:
                 print(f"  {name:36} FAILED: {why}")
                 bad = True

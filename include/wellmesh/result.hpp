@@ -62,8 +62,8 @@ struct JoinStatistics {
     std::vector<JoinedFeature> joined;
 };
 
-/// Gaps between features of the input without a common point that are so narrow that filling them with tetrahedra within the goals would take far too many.
-/// The mesh conforms there, no more; elsewhere it keeps its goals.
+/// Gaps between features of the input without a common point that are so narrow that filling them with tetrahedra within the goals would take far too
+/// many. The mesh conforms there, no more; elsewhere it keeps its goals.
 struct GapStatistics {
     ElementRef side, other_side;  ///< of the gap that takes most, with a place on each
     double width = 0;             ///< there, input units
@@ -97,7 +97,7 @@ struct MeshResult {
     Certificate certificate;
     MeshStatistics statistics;
     std::vector<AskedAchieved> goals;
-    /// Tetrahedra that miss a goal for their shape because the input's acute angles force them to, or because they lie in gaps that were left, ascending; goals and certificate leave them out.
+    /// Tetrahedra that goals and certificate leave out: acute angles of the input, or gaps that were left, keep them from a goal of shape; ascending
     std::vector<Exemption> exemptions;
     std::optional<InvariantReport> invariants{};  ///< if MeshOptions ask for it
 };

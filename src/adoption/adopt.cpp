@@ -26,7 +26,13 @@ constexpr std::size_t kNamed = 20;  // offenders in one message
 class Adopter {
 public:
     Adopter(const TetMesh& mesh, const ValidPlc& plc, double tolerance, GivenMeshStatistics& statistics, const Checkpoint& checkpoint)
-        : mesh_(mesh), plc_(plc), tolerance_(tolerance), statistics_(statistics), checkpoint_(checkpoint), given_(inspect_given_mesh(mesh)), finder_(plc, tolerance) {}
+        : mesh_(mesh),
+          plc_(plc),
+          tolerance_(tolerance),
+          statistics_(statistics),
+          checkpoint_(checkpoint),
+          given_(inspect_given_mesh(mesh)),
+          finder_(plc, tolerance) {}
 
     ConformingMesh adopt() {
         find_carriers();
@@ -86,9 +92,11 @@ void Adopter::find_carriers() {
 void Adopter::refuse_strays() const {
     if (strays_.empty()) return;
     std::vector<ElementRef> offenders;
-    for (std::size_t i = 0; i < std::min(kNamed, strays_.size()); ++i) offenders.push_back({EntityKind::vertex, strays_[i] + 1U, mesh_.vertices[strays_[i]]});
+    for (std::size_t i = 0; i < std::min(kNamed, strays_.size()); ++i)
+        offenders.push_back({EntityKind::vertex, strays_[i] + 1U, mesh_.vertices[strays_[i]]});
     throw MeshError(ErrorCode::bad_input, kStage,
-                    fmt::format("the mesh is not one of this domain: {} of its boundary vertices lie on no facet; vertex {} is {:.4g} away from the nearest, the tolerance is {:.4g}",
+                    fmt::format("the mesh is not one of this domain: {} of its boundary vertices lie on no facet; vertex {} is {:.4g} away from the "
+                                "nearest, the tolerance is {:.4g}",
                                 strays_.size(), strays_[0] + 1, finder_.distance_to_facets(mesh_.vertices[strays_[0]]), tolerance_),
                     offenders);
 }
@@ -145,7 +153,9 @@ void Adopter::refuse_other_volume() const {
         where = offenders.empty() ? "a region is missing, or tetrahedra overlap" : "these vertices of the domain are not in it";
     }
     throw MeshError(ErrorCode::bad_input, kStage,
-                    fmt::format("the mesh does not fill this domain: its tetrahedra have a volume of {:.10g}, the domain has {:.10g}; {}", given_.volume, wanted, where), offenders);
+                    fmt::format("the mesh does not fill this domain: its tetrahedra have a volume of {:.10g}, the domain has {:.10g}; {}",
+                                given_.volume, wanted, where),
+                    offenders);
 }
 
 /// Input vertices first, then the others in the mesh's order, each place once.
@@ -170,7 +180,8 @@ void Adopter::number_vertices() {
     std::vector<std::pair<Vec3, std::uint64_t>> places;
     for (const Vec3& p : plc_.vertices) places.push_back({p, 0});
     for (const std::uint32_t v : order) places.push_back({carriers_[v].point, std::uint64_t{v} + 1});
-    std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first != b.first ? lexicographically_less(a.first, b.first) : a.second < b.second; });
+    std::sort(places.begin(), places.end(),
+              [](const auto& a, const auto& b) { return a.first != b.first ? lexicographically_less(a.first, b.first) : a.second < b.second; });
     std::vector<char> repeats(mesh_.vertices.size(), 0);
     for (std::size_t i = 1; i < places.size(); ++i)
         if (places[i].first == places[i - 1].first) repeats[places[i].second - 1] = 1;
@@ -225,7 +236,8 @@ double adoption_tolerance(const TetMesh& mesh, const Plc& plc) {
     Rounding rounding;
     rounding.relative = std::max(plc.relative_rounding, mesh.relative_rounding);
     for (const auto* points : {&plc.vertices, &mesh.vertices})
-        for (const Vec3& p : *points) rounding.largest_coordinate = std::max({rounding.largest_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        for (const Vec3& p : *points)
+            rounding.largest_coordinate = std::max({rounding.largest_coordinate, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     return std::max(CertifyOptions{}.tolerance * distance(lo, hi), rounding.on_edge());
 }
 
@@ -246,7 +258,9 @@ void settle_regions(ConformingMesh& mesh) {
     }
     if (outside.empty()) return;
     const Vec3 p = *outside[0].where;
-    throw MeshError(ErrorCode::bad_input, kStage, fmt::format("the mesh is not one of this domain: {} of its vertices lie outside, one at ({}, {}, {})", outside.size(), p.x, p.y, p.z), {});
+    throw MeshError(
+        ErrorCode::bad_input, kStage,
+        fmt::format("the mesh is not one of this domain: {} of its vertices lie outside, one at ({}, {}, {})", outside.size(), p.x, p.y, p.z), {});
 }
 
 }  // namespace wellmesh

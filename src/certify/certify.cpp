@@ -34,7 +34,8 @@ Claim claim_finite(const TetMesh& mesh) {
     claim.checked(mesh.vertices.size());
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
         if (!in_exact_range(flush_to_exact_range(mesh.vertices[v])))
-            claim.violated(EntityKind::vertex, v + 1, mesh.vertices[v], [&] { return fmt::format("vertex {} is at {}", v + 1, text_of(mesh.vertices[v])); });
+            claim.violated(EntityKind::vertex, v + 1, mesh.vertices[v],
+                           [&] { return fmt::format("vertex {} is at {}", v + 1, text_of(mesh.vertices[v])); });
     for (std::size_t v = 0; v < std::min(mesh.weights.size(), mesh.vertices.size()); ++v)
         if (const double w = mesh.weights[v]; !weight_in_exact_range(std::fabs(w) < kMinWeight ? 0 : w))
             claim.violated(EntityKind::vertex, v + 1, mesh.vertices[v], [&] { return fmt::format("vertex {} has weight {}", v + 1, w); });
@@ -48,13 +49,15 @@ Claim claim_numbers(const TetMesh& mesh) {
         claim.checked(elements.size());
         for (std::size_t i = 0; i < elements.size(); ++i)
             if (*std::max_element(elements[i].begin(), elements[i].end()) >= mesh.vertices.size())
-                claim.violated(kind, i + 1, Vec3{}, [&] { return fmt::format("{} {} names a vertex beyond the last, {}", to_string(kind), i + 1, mesh.vertices.size()); });
+                claim.violated(kind, i + 1, Vec3{},
+                               [&] { return fmt::format("{} {} names a vertex beyond the last, {}", to_string(kind), i + 1, mesh.vertices.size()); });
     };
     look(mesh.tets, EntityKind::tetrahedron);
     look(mesh.subfaces, EntityKind::triangle);
     look(mesh.subsegments, EntityKind::edge);
     const auto length = [&](std::size_t have, std::size_t want, const char* what) {
-        if (have != 0 && have != want) claim.violated(EntityKind::file, 0, Vec3{}, [&] { return fmt::format("{} {} for {} elements", have, what, want); });
+        if (have != 0 && have != want)
+            claim.violated(EntityKind::file, 0, Vec3{}, [&] { return fmt::format("{} {} for {} elements", have, what, want); });
     };
     length(mesh.tet_regions.size(), mesh.tets.size(), "region references");
     length(mesh.weights.size(), mesh.vertices.size(), "weights");
@@ -76,7 +79,8 @@ Claim claim_positive(const SuspectMesh& mesh) {
             part.violated(EntityKind::tetrahedron, t + 1, mesh.tet_centroid(t), [&] {
                 const auto& v = mesh.mesh().tets[t];
                 const bool flat = orient3d(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) == Sign::zero;
-                return fmt::format("vertices {} {} {} {} make {} tetrahedron", v[0] + 1, v[1] + 1, v[2] + 1, v[3] + 1, flat ? "a flat" : "an inverted");
+                return fmt::format("vertices {} {} {} {} make {} tetrahedron", v[0] + 1, v[1] + 1, v[2] + 1, v[3] + 1,
+                                   flat ? "a flat" : "an inverted");
             });
         }
     });
@@ -88,7 +92,8 @@ Claim claim_distinct_vertices(const SuspectMesh& mesh, const VertexPlaces& place
     claim.checked(mesh.vertex_count());
     look_in_ranges(mesh.workers(), places.buckets(), kGrain, claim, [&](std::size_t begin, std::size_t end, ClaimBuilder& part) {
         places.for_repetitions(begin, end, [&](std::uint32_t v, std::uint32_t first) {
-            part.violated(EntityKind::vertex, v + std::uint64_t{1}, mesh.points()[v], [&] { return fmt::format("vertex {} is where vertex {} is", v + 1, first + 1); });
+            part.violated(EntityKind::vertex, v + std::uint64_t{1}, mesh.points()[v],
+                          [&] { return fmt::format("vertex {} is where vertex {} is", v + 1, first + 1); });
         });
     });
     return claim.decided();
@@ -103,7 +108,8 @@ Claim claim_used_vertices(const SuspectMesh& mesh) {
             for (const std::uint32_t v : mesh.mesh().tets[t]) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
     });
     for (std::size_t v = 0; v < used.size(); ++v)
-        if (used[v] == 0) claim.violated(EntityKind::vertex, v + 1, mesh.points()[v], [&] { return fmt::format("vertex {} belongs to none", v + 1); });
+        if (used[v] == 0)
+            claim.violated(EntityKind::vertex, v + 1, mesh.points()[v], [&] { return fmt::format("vertex {} belongs to none", v + 1); });
     return claim.decided();
 }
 
@@ -142,8 +148,8 @@ void append_geometric_claims(const SuspectMesh& mesh, const CertifyOptions& opti
     poll();
     VertexSearch search(mesh);
     const Claim disjoint = claim_disjoint(mesh, search, faces.constraints, proof, faces_in_order);
-    claims.insert(claims.end(), {positive, faces.face_sharing, faces.opposite_sides, faces.distinct_tets, disjoint, claim_conservation(mesh, faces), distinct, used,
-                                 faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh, stars)});
+    claims.insert(claims.end(), {positive, faces.face_sharing, faces.opposite_sides, faces.distinct_tets, disjoint, claim_conservation(mesh, faces),
+                                 distinct, used, faces.listed_subfaces_exist, claim_listed_subsegments_exist(mesh, stars)});
     poll();
     const bool locally_delaunay = faces_in_order && disjoint.state == Claim::State::proven && faces.locally_not_delaunay == 0 && !broken(used);
     const bool by_hull = locally_delaunay && proof.hull_is_clear();

@@ -110,7 +110,8 @@ public:
                 worst.of_all = std::max(worst.of_all, off);
                 if (off > tolerance_)
                     part.violated(EntityKind::triangle, t.listed == kNone ? 0 : t.listed + std::uint64_t{1}, probes[where], [&] {
-                        return fmt::format("triangle {} {} {} is {:.3g} away from the PLC, {:.3g} of its diagonal", t.v[0] + 1, t.v[1] + 1, t.v[2] + 1, off, off / surface_.diagonal);
+                        return fmt::format("triangle {} {} {} is {:.3g} away from the PLC, {:.3g} of its diagonal", t.v[0] + 1, t.v[1] + 1,
+                                           t.v[2] + 1, off, off / surface_.diagonal);
                     });
             }
         });
@@ -120,8 +121,10 @@ public:
             worst.of_vertex = std::max(worst.of_vertex, part.of_vertex);
             worst.far_vertices += part.far_vertices;
         }
-        claim.note(fmt::format("largest distance {:.3g}, {:.3g} of the diagonal, tolerance {:g}", worst.of_all, worst.of_all / surface_.diagonal, relative_tolerance_));
-        claim.note(fmt::format("of a vertex {:.3g}; {} vertices are more than 4 ulp of the largest coordinate away", worst.of_vertex, worst.far_vertices));
+        claim.note(fmt::format("largest distance {:.3g}, {:.3g} of the diagonal, tolerance {:g}", worst.of_all, worst.of_all / surface_.diagonal,
+                               relative_tolerance_));
+        claim.note(
+            fmt::format("of a vertex {:.3g}; {} vertices are more than 4 ulp of the largest coordinate away", worst.of_vertex, worst.far_vertices));
         return claim.decided();
     }
 
@@ -145,8 +148,9 @@ public:
                 return uncovered ? fmt::format("facet {} is not covered at {}", facet + 1, text_of(where)) : std::string("the areas differ");
             });
         }
-        claim.note(fmt::format("PLC {:.12g}, mesh {:.12g}, relative difference {:.3g}, tolerance {:.3g}; outside the mesh {:.6g}", static_cast<double>(wanted), static_cast<double>(present),
-                               static_cast<double>(error), static_cast<double>(allowed), static_cast<double>(removed)));
+        claim.note(fmt::format("PLC {:.12g}, mesh {:.12g}, relative difference {:.3g}, tolerance {:.3g}; outside the mesh {:.6g}",
+                               static_cast<double>(wanted), static_cast<double>(present), static_cast<double>(error), static_cast<double>(allowed),
+                               static_cast<double>(removed)));
         return claim.decided();
     }
 
@@ -156,7 +160,8 @@ public:
             const Vec3& p = surface_.points[v];
             claim.checked(1);
             if (places_.first_at(p) == kNone && (near_constraint(p) || inside(p)))
-                claim.violated(EntityKind::vertex, std::uint64_t{v} + first_number, p, [&] { return fmt::format("PLC vertex {} at {} is missing", v + first_number, text_of(p)); });
+                claim.violated(EntityKind::vertex, std::uint64_t{v} + first_number, p,
+                               [&] { return fmt::format("PLC vertex {} at {} is missing", v + first_number, text_of(p)); });
         }
         return claim.decided();
     }
@@ -168,7 +173,8 @@ public:
         for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
             if (triangles_[i] != Part::outside || surface_.dangling[i]) continue;
             const Vec3 where = centroid_of(surface_.triangles.triangles()[i]);
-            claim.violated(EntityKind::facet, surface_.facets[i] + std::uint64_t{1}, where, [&] { return fmt::format("facet {} is outside at {}", surface_.facets[i] + 1, text_of(where)); });
+            claim.violated(EntityKind::facet, surface_.facets[i] + std::uint64_t{1}, where,
+                           [&] { return fmt::format("facet {} is outside at {}", surface_.facets[i] + 1, text_of(where)); });
         }
         return claim.decided();
     }
@@ -177,7 +183,9 @@ public:
         ClaimBuilder claim = builder(6);
         claim.checked(plc.hole_seeds.size());
         for (std::size_t i = 0; i < plc.hole_seeds.size(); ++i)
-            if (inside(plc.hole_seeds[i])) claim.violated(EntityKind::region, i + 1, plc.hole_seeds[i], [&] { return fmt::format("hole seed {} at {}", i + 1, text_of(plc.hole_seeds[i])); });
+            if (inside(plc.hole_seeds[i]))
+                claim.violated(EntityKind::region, i + 1, plc.hole_seeds[i],
+                               [&] { return fmt::format("hole seed {} at {}", i + 1, text_of(plc.hole_seeds[i])); });
         return claim.decided();
     }
 
@@ -281,7 +289,8 @@ Claim PlcComparison::segments() const {
         for (std::size_t i = 0; i < n; ++i) {
             const OnEdge& o = begin[static_cast<std::ptrdiff_t>(i)];
             if (o.at == 0) reached[i] = true;
-            for (std::size_t j = i; j-- > 0 && i - j <= kLookAhead && !reached[i];) reached[i] = reached[j] && joined(begin[static_cast<std::ptrdiff_t>(j)].vertex, o.vertex);
+            for (std::size_t j = i; j-- > 0 && i - j <= kLookAhead && !reached[i];)
+                reached[i] = reached[j] && joined(begin[static_cast<std::ptrdiff_t>(j)].vertex, o.vertex);
             if (reached[i]) farthest = i;
             complete = complete || (reached[i] && o.at == 1);
         }
@@ -304,7 +313,8 @@ Claim PlcComparison::segments() const {
 /// Signed.
 long double cone_volume(const Vec3& tip, const Corners& base) {
     const auto from_tip = [&](const Vec3& x) {
-        return std::array<long double, 3>{static_cast<long double>(x.x) - static_cast<long double>(tip.x), static_cast<long double>(x.y) - static_cast<long double>(tip.y),
+        return std::array<long double, 3>{static_cast<long double>(x.x) - static_cast<long double>(tip.x),
+                                          static_cast<long double>(x.y) - static_cast<long double>(tip.y),
                                           static_cast<long double>(x.z) - static_cast<long double>(tip.z)};
     };
     const auto a = from_tip(base[0]), b = from_tip(base[1]), d = from_tip(base[2]);
@@ -320,9 +330,11 @@ Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
     std::map<std::int32_t, Sum> sums;
     const auto& triangles = surface_.triangles.triangles();
     std::vector<TriangleTree::Nearest> separators(triangles.size(), {0, std::numeric_limits<double>::infinity()});
-    if (!separating_.empty()) mesh_.workers().for_ranges(triangles.size(), kSmallGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) separators[i] = separators_->nearest(centroid_of(triangles[i]), i == begin ? 0 : separators[i - 1].triangle);
-    });
+    if (!separating_.empty())
+        mesh_.workers().for_ranges(triangles.size(), kSmallGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i)
+                separators[i] = separators_->nearest(centroid_of(triangles[i]), i == begin ? 0 : separators[i - 1].triangle);
+        });
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const Corners& t = triangles[i];
         const TriangleTree::Nearest& nearest = separators[i];
@@ -345,10 +357,12 @@ Claim PlcComparison::region_volumes(std::vector<RegionVolume>& regions) const {
         const Sum& sum = sums[r.region];
         r.plc_volume = static_cast<double>(sum.volume);
         claim.checked(1);
-        const double allowed = static_cast<double>(sum.area) * tolerance_ + 1e-12 * std::abs(r.volume), difference = std::abs(r.volume - *r.plc_volume);
+        const double allowed = static_cast<double>(sum.area) * tolerance_ + 1e-12 * std::abs(r.volume),
+                     difference = std::abs(r.volume - *r.plc_volume);
         if (!(difference <= allowed))
             claim.violated(EntityKind::region, static_cast<std::uint64_t>(std::max(r.region, 0)), sum.origin.value_or(Vec3{}), [&] {
-                return fmt::format("region {} has volume {:.12g}, the PLC's cells have {:.12g}: a difference of {:.3g}, allowed is {:.3g}", r.region, r.volume, *r.plc_volume, difference, allowed);
+                return fmt::format("region {} has volume {:.12g}, the PLC's cells have {:.12g}: a difference of {:.3g}, allowed is {:.3g}", r.region,
+                                   r.volume, *r.plc_volume, difference, allowed);
             });
     }
     claim.note("allowed difference: surface area times distance tolerance, and 1e-12 of the volume");

@@ -1,86 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bulk insertion on several threads. Space is split into zones; a tetrahedron belongs to a zone if all of its vertices do. Each zone has a worker with a view of
-// the triangulation, which may touch what belongs to its zone and nothing else: a point whose search meets anything else is left for later. What is left then
-// lies along the limits of the zones, and is shared out once more with limits of its own; the few that are left again go in one by one.
+// Bulk insertion on several threads. Space is split into zones; a tetrahedron belongs to a zone if all of its vertices do. Each zone has a worker
+// with a view of the triangulation, which may touch what belongs to its zone and nothing else: a point whose search meets anything else is left for
+// later. What is left then lies along the limits of the zones, and is shared out once more with limits of its own; the few that are left again go in
+// one by one.
 //
 // The tetrahedra are a function of the points alone (triangulation.hpp), so who inserted what can't be seen in them; only their ids tell.
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <limits>
 #include <unordered_map>
 #include <utility>
 
 #include "delaunay/triangulation.hpp"
+#include "delaunay/zones.hpp"
 
 namespace wellmesh {
 namespace {
 
-constexpr std::uint8_t kNoZone = 255;
-constexpr std::size_t kMostZones = 128;
 /// Fewer points than these a zone are not worth the trouble: most would lie near its limits.
 constexpr std::size_t kLeastPointsAZone = 2000;
 /// Points grow by this factor from one share-out to the next: a zone's limits get thinner as its points get denser.
 constexpr std::size_t kGrowth = 8;
 constexpr std::size_t kBetweenQuestions = 512;  // insertions, of microseconds mostly
-
-/// Parts of space that have about as many points of a sample each. Limits of one turn are far from those of the next: what lies along them has its turn then.
-class ZoneTree {
-public:
-    ZoneTree(std::vector<Vec3> sample, std::size_t zones, unsigned turn) : zones_(zones), turn_(turn), nodes_(zones) {
-        first_axis_ = longest_axis(sample);
-        split(sample, 1, 0, zones);
-    }
-
-    [[nodiscard]] std::uint8_t zone_of(const Vec3& p) const {
-        std::size_t node = 1;
-        while (node < zones_) node = 2 * node + (coordinate(p, nodes_[node].axis) < nodes_[node].limit ? 0 : 1);
-        return static_cast<std::uint8_t>(node - zones_);
-    }
-
-private:
-    struct Node {
-        unsigned axis = 0;
-        double limit = 0;
-    };
-    static double coordinate(const Vec3& p, unsigned axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
-    /// @param before, below  the zones that this node is for, [before, before + below)
-    void split(std::span<Vec3> points, std::size_t node, std::size_t before, std::size_t below) {
-        if (node >= zones_) return;
-        unsigned axis = (first_axis_ + turn_) % 3;
-        std::size_t part = points.size() / 2;
-        if (turn_ == 0) {
-            axis = longest_axis(points);
-        } else {
-            // Slabs, the first and the last one half as thick as the others.
-            const double left = static_cast<double>(before) - (before == 0 ? 0 : 0.5), right = static_cast<double>(before + below) - (before + below == zones_ ? 1 : 0.5);
-            const double middle = static_cast<double>(before + below / 2) - 0.5;
-            part = static_cast<std::size_t>((middle - left) / (right - left) * static_cast<double>(points.size()));
-        }
-        if (part < points.size()) {
-            std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(part), points.end(),
-                             [axis](const Vec3& p, const Vec3& q) { return coordinate(p, axis) < coordinate(q, axis); });
-            nodes_[node] = {axis, coordinate(points[part], axis)};
-        }
-        split(points.first(part), 2 * node, before, below / 2);
-        split(points.subspan(part), 2 * node + 1, before + below / 2, below / 2);
-    }
-    static unsigned longest_axis(std::span<const Vec3> points) {
-        constexpr double kInfinity = std::numeric_limits<double>::infinity();
-        Vec3 lo{kInfinity, kInfinity, kInfinity}, hi{-kInfinity, -kInfinity, -kInfinity};
-        for (const Vec3& p : points) {
-            lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-            hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-        }
-        const double x = hi.x - lo.x, y = hi.y - lo.y, z = hi.z - lo.z;
-        return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    }
-
-    std::size_t zones_;  // a power of two: inner nodes are 1 to zones - 1, as in a heap
-    unsigned turn_, first_axis_ = 0;
-    std::vector<Node> nodes_;
-};
 
 }  // namespace
 
@@ -100,7 +41,8 @@ Triangulation Triangulation::view_of_zone(std::uint8_t zone, std::uint8_t* zone_
 }
 
 /// In a view. @param left  gets what must wait: its cavity is not all of this zone, or there is no room.
-void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId seed, BulkObserver* observer, std::vector<std::uint32_t>& left, std::vector<std::uint32_t>& refused) {
+void Triangulation::insert_in_zone(std::span<const std::uint32_t> order, TetId seed, BulkObserver* observer, std::vector<std::uint32_t>& left,
+                                   std::vector<std::uint32_t>& refused) {
     if (!seed.valid()) {
         left.assign(order.begin(), order.end());
         return;
@@ -183,14 +125,16 @@ std::vector<std::uint32_t> Triangulation::insert_one_by_one(std::span<const std:
 }
 
 /// @return what is left
-std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn, BulkObserver* observer, std::vector<std::uint32_t>& refused) {
-    const std::size_t zones = std::min({std::bit_floor(order.size() / kLeastPointsAZone), std::bit_ceil(std::size_t{workers.threads()}), kMostZones});
+std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std::span<const std::uint32_t> order, unsigned turn,
+                                                          BulkObserver* observer, std::vector<std::uint32_t>& refused) {
+    const std::size_t zones =
+        std::min({std::bit_floor(order.size() / kLeastPointsAZone), std::bit_ceil(std::size_t{workers.threads()}), Zones::kMost});
     if (zones < 2) return {order.begin(), order.end()};
     constexpr std::size_t kSampleAZone = 1024;
     std::vector<Vec3> sample;
     const std::size_t step = std::max<std::size_t>(1, order.size() / (kSampleAZone * zones));
     for (std::size_t k = 0; k < order.size(); k += step) sample.push_back(point(VertexId{order[k]}));
-    const ZoneTree tree(std::move(sample), zones, turn);
+    const Zones tree(std::move(sample), zones, turn);
 
     struct Zone {
         std::vector<std::uint32_t> order, left, refused;
@@ -221,7 +165,8 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
     }
     if (const std::size_t marked = mark_.size(); marked < tets_.slots()) {
         mark_.resize_as_is(tets_.slots());
-        workers.for_ranges(tets_.slots() - marked, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) { std::fill(&mark_[marked] + begin, &mark_[marked] + end, 0U); });
+        workers.for_ranges(tets_.slots() - marked, kGrain,
+                           [&](std::size_t begin, std::size_t end, std::size_t) { std::fill(&mark_[marked] + begin, &mark_[marked] + end, 0U); });
     }
     renew_stamps(order.size());
     if (observer) {
@@ -230,11 +175,11 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
     }
 
     zone_of_tet.resize_as_is(tets_.slots());
-    std::vector<std::array<TetId, kMostZones>> first((old_slots + kGrain - 1) / kGrain);
+    std::vector<std::array<TetId, Zones::kMost>> first((old_slots + kGrain - 1) / kGrain);
     workers.for_ranges(old_slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         for (std::size_t i = begin; i < end; ++i) {
             const TetStore::Corners& c = tets_.corners(TetId{i});
-            zone_of_tet[i] = kNoZone;
+            zone_of_tet[i] = ZoneViews::kNone;
             if (!c[0].valid()) continue;
             const std::uint8_t zone = zone_of_vertex[c[0].index()];
             if (zone_of_vertex[c[1].index()] != zone || zone_of_vertex[c[2].index()] != zone) continue;
@@ -300,7 +245,8 @@ void Triangulation::prefer_first_duplicates(std::size_t from) {
 
 std::vector<std::uint32_t> Triangulation::insert_on(Workers& workers, std::span<const std::uint32_t> order, BulkObserver* observer) {
     const std::size_t known = duplicates_.size();
-    // Shares as the rounds of a biased order [Amenta03], each kGrowth times the one before, so that a zone's limits are thin beside what goes into it.
+    // Shares as the rounds of a biased order [Amenta03], each kGrowth times the one before, so that a zone's limits are thin beside what goes into
+    // it.
     std::size_t share = order.size();
     if (workers.threads() > 1)
         while (share > 2 * kLeastPointsAZone * workers.threads()) share /= kGrowth;

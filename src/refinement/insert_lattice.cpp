@@ -48,13 +48,15 @@ std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<Latti
     workers_.for_ranges(order.size(), 1 << 14, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t k = begin; k < end; ++k) {
             const LatticePoint& p = lattice[order[k]];
-            seeds[k] = {flush_to_exact_range(p.point + (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1)), p.spacing};
+            seeds[k] = {flush_to_exact_range(p.point + (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1)),
+                        p.spacing};
         }
     });
     return seeds;
 }
 
-/// On all workers first: whether seeds are clear of the boundary, and encroach upon it, does not depend on what else is there. Then those in balls, in their order.
+/// On all workers first: whether seeds are clear of the boundary, and encroach upon it, does not depend on what else is there. Then those in balls,
+/// in their order.
 bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
     // A limit on vertices depends on the order.
     std::vector<char> in_bulk(seeds.size(), 0);
@@ -74,15 +76,16 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
     return true;
 }
 
-/// Which seeds are in a cell that wants them, clear of the boundary, and in no ball about an acute vertex: balls give way one by one. Those that are not clear
-/// wait no longer.
+/// Which seeds are in a cell that wants them, clear of the boundary, and in no ball about an acute vertex: balls give way one by one. Those that are
+/// not clear wait no longer.
 std::vector<char> LatticeSeeder::find_clear(std::span<Seed> seeds) {
     const std::vector<Face> faces = list_faces();
     std::vector<Box> boxes;
     boxes.reserve(faces.size());
     for (const Face& f : faces) boxes.push_back({f.box[0], f.box[1]});
     for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v)  // those of facets lie in them
-        if (mesh_.info(VertexId{v}).carrier == CarrierKind::segment || mesh_.info(VertexId{v}).carrier == CarrierKind::input_vertex) boxes.push_back({mesh_.point(VertexId{v}), mesh_.point(VertexId{v})});
+        if (mesh_.info(VertexId{v}).carrier == CarrierKind::segment || mesh_.info(VertexId{v}).carrier == CarrierKind::input_vertex)
+            boxes.push_back({mesh_.point(VertexId{v}), mesh_.point(VertexId{v})});
     const BoxTree tree(boxes);
     const std::vector<Box> balls = boundary_.acute().boxes_of_balls();
     const BoxTree ball_tree(balls);
@@ -101,7 +104,9 @@ std::vector<char> LatticeSeeder::find_clear(std::span<Seed> seeds) {
             const double reach = kClearance * radius;
             tree.query([&](const Box& b) { return seeds[k].waits && b.distance_to(p) < reach; },
                        [&](std::uint32_t i) {
-                           if (i >= faces.size() || squared_distance_to_triangle(p, faces[i].corners[0], faces[i].corners[1], faces[i].corners[2]) < reach * reach) seeds[k].waits = false;
+                           if (i >= faces.size() ||
+                               squared_distance_to_triangle(p, faces[i].corners[0], faces[i].corners[1], faces[i].corners[2]) < reach * reach)
+                               seeds[k].waits = false;
                        });
             bool in_ball = false;
             ball_tree.query([&](const Box& b) { return !in_ball && b.distance_to(p) <= 0; }, [&](std::uint32_t) { in_ball = true; });
@@ -150,7 +155,8 @@ bool LatticeSeeder::insert_in_bulk(std::span<Seed> seeds, const std::vector<char
 bool LatticeSeeder::is_clear(const Vec3& p, double clearance) const {
     for (const TetId t : cavity_.tets) {
         for (const VertexId v : mesh_.tets().corners(t))
-            if (v != kInfiniteVertex && mesh_.info(v).carrier != CarrierKind::region && squared_distance(p, mesh_.point(v)) < clearance * clearance) return false;
+            if (v != kInfiniteVertex && mesh_.info(v).carrier != CarrierKind::region && squared_distance(p, mesh_.point(v)) < clearance * clearance)
+                return false;
         if (!mesh_.has_labels(t)) continue;
         for (unsigned f = 0; f < 4; ++f) {
             if (!mesh_.labels(t).facets[f].valid()) continue;

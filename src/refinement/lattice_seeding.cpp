@@ -25,8 +25,8 @@ namespace {
 /// between lattice and boundary costs as many vertices as the lattice saves.
 constexpr double kLeastThickness = 1;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Least part of the spacing allowed at which leaves are worth it where the size varies: the lattice has 0.349 vertices a cubed radius of its own, refinement
-/// makes 0.75 of the bound's, and (0.349 / 0.75)^(1/3) / kLatticeScale = 0.82.
+/// Least part of the spacing allowed at which leaves are worth it where the size varies: the lattice has 0.349 vertices a cubed radius of its own,
+/// refinement makes 0.75 of the bound's, and (0.349 / 0.75)^(1/3) / kLatticeScale = 0.82.
 constexpr double kLeastUse = 0.82;
 /// Ratios of spacings modulo 2 are told apart to a part of 2^(1/64) - 1, one per cent.
 constexpr std::size_t kPhases = 64;
@@ -52,10 +52,24 @@ private:
 };
 
 LatticeSeeder::LatticeSeeder(ConformingMesh& view, BoundaryRefiner& boundary, const LatticeSeeder& whole)
-    : mesh_(view), boundary_(boundary), guard_(whole.guard_), sizes_(whole.sizes_), workers_(whole.workers_), radius_(whole.radius_), spacing_(whole.spacing_), is_thin_(whole.is_thin_) {}
+    : mesh_(view),
+      boundary_(boundary),
+      guard_(whole.guard_),
+      sizes_(whole.sizes_),
+      workers_(whole.workers_),
+      radius_(whole.radius_),
+      spacing_(whole.spacing_),
+      is_thin_(whole.is_thin_) {}
 
 LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes, Workers& workers)
-    : mesh_(mesh), boundary_(boundary), guard_(guard), sizes_(sizes), workers_(workers), radius_(mesh.plc().cells.size(), kInfinity), spacing_(radius_.size(), kInfinity), is_thin_(radius_.size(), 0) {
+    : mesh_(mesh),
+      boundary_(boundary),
+      guard_(guard),
+      sizes_(sizes),
+      workers_(workers),
+      radius_(mesh.plc().cells.size(), kInfinity),
+      spacing_(radius_.size(), kInfinity),
+      is_thin_(radius_.size(), 0) {
     std::vector<double> surface(radius_.size(), 0);
     for (const ValidFacet& f : mesh.plc().facets) {
         double area = 0;
@@ -120,7 +134,8 @@ bool LatticeSeeder::list_too_large(TetId t, double coarseness, std::vector<Subse
 }
 
 /// The same of some; `which` gets those that have any.
-void LatticeSeeder::list_too_large(std::vector<TetId> of, double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const {
+void LatticeSeeder::list_too_large(std::vector<TetId> of, double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments,
+                                   std::vector<Subface>& faces) const {
     std::sort(of.begin(), of.end());
     of.erase(std::unique(of.begin(), of.end()), of.end());
     for (const TetId t : of)
@@ -128,7 +143,8 @@ void LatticeSeeder::list_too_large(std::vector<TetId> of, double coarseness, std
 }
 
 /// The same of all tetrahedra; `which` gets those that have any.
-void LatticeSeeder::list_all_too_large(double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const {
+void LatticeSeeder::list_all_too_large(double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments,
+                                       std::vector<Subface>& faces) const {
     struct Found {
         std::vector<TetId> which;
         std::vector<Subsegment> segments;
@@ -199,8 +215,8 @@ void LatticeSeeder::split_in_zone(double coarseness, std::vector<TetId> waiting,
 
 bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
     constexpr std::size_t kLeastAZone = 256, kSampleAZone = 512;
-    // Each subsegment is listed by several tetrahedra, and each vertex makes two faces more: half a vertex per entry is measured at most. One takes seven
-    // tetrahedra, or less. Who finds no room waits for the next turn.
+    // Each subsegment is listed by several tetrahedra, and each vertex makes two faces more: half a vertex per entry is measured at most. One takes
+    // seven tetrahedra, or less. Who finds no room waits for the next turn.
     constexpr std::size_t kTetsPerVertex = 8, kMoreVertices = 64;
     // What waits twice lies where nearly all tetrahedra are cut: to try it once more takes longer than to split it.
     constexpr unsigned kTurns = 2;
@@ -217,7 +233,8 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
         for (std::size_t k = 0; k < waiting.size(); k += step) sample.push_back(mesh_.point(mesh_.tets().corner(waiting[k], 0)));
         const std::size_t vertices = work / count + kMoreVertices;
         ZoneViews parts;
-        std::vector<ConformingMesh> views = mesh_.split(workers_, Zones(std::move(sample), count, turn), {kTetsPerVertex * vertices, vertices}, parts);
+        std::vector<ConformingMesh> views =
+            mesh_.split(workers_, Zones(std::move(sample), count, turn), {kTetsPerVertex * vertices, vertices}, parts);
         std::vector<std::vector<TetId>> shares(count);
         for (const TetId t : waiting)
             if (const std::uint8_t zone = parts.zone_of_tet[t.index()]; zone != ZoneViews::kNone) shares[zone].push_back(t);
@@ -225,7 +242,11 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
         for (std::size_t z = 0; z < count; ++z) boundaries.emplace_back(views[z], boundary_, parts, static_cast<std::uint8_t>(z));
         SharedGuard guard(guard_, mesh_.vertex_count(), mesh_.tets().live());
         workers_.for_each(count, [&](std::size_t z) {
-            guard.watch([&] { LatticeSeeder(views[z], boundaries[z], *this).split_in_zone(coarseness, std::move(shares[z]), [&](std::size_t left) { return guard.may_go_on(left); }); });
+            guard.watch([&] {
+                LatticeSeeder(views[z], boundaries[z], *this).split_in_zone(coarseness, std::move(shares[z]), [&](std::size_t left) {
+                    return guard.may_go_on(left);
+                });
+            });
         });
         mesh_.join(views);
         for (const BoundaryRefiner& b : boundaries) boundary_.join(b);
@@ -314,7 +335,8 @@ void LatticeSeeder::build(GradedOctree& tree, std::uint32_t node, const std::vec
         spacing = std::min(spacing, faces_[f].spacing);
     }
     const TetId at_centre = mesh_.triangulation().locate(0.5 * (box.lo + hi), near);
-    const double inside = mesh_.tets().is_finite(at_centre) && mesh_.in_domain(at_centre) ? spacing_at(0.5 * (box.lo + hi), mesh_.cell(at_centre)) : kInfinity;
+    const double inside =
+        mesh_.tets().is_finite(at_centre) && mesh_.in_domain(at_centre) ? spacing_at(0.5 * (box.lo + hi), mesh_.cell(at_centre)) : kInfinity;
     spacing = std::min(spacing, inside);
     if (spacing == kInfinity) return;
     if (box.side <= spacing * (1 + 1e-9) || tree.depth(node) == GradedOctree::kMaxDepth) {

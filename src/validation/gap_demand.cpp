@@ -6,7 +6,8 @@
 namespace wellmesh {
 namespace {
 
-/// The middle of a facet may be beside a gap though its corners are not. An eighth of its size is looked at; the facet across a smaller gap has corners there.
+/// The middle of a facet may be beside a gap though its corners are not. An eighth of its size is looked at; the facet across a smaller gap has
+/// corners there.
 constexpr Halvings kThorough{6, 8};
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it takes to fill a gap between two features of the input that have no point in common with tetrahedra of bounded radius-edge ratio: about as many
-// vertices as there are squares of the gap's width on its sides.
+// What it takes to fill a gap between two features of the input that have no point in common with tetrahedra of bounded radius-edge ratio: about as
+// many vertices as there are squares of the gap's width on its sides.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace wellmesh {
 /// Of the size of a piece of the boundary and of the gap's width there: smaller pieces are no more than ordinary meshes need.
 inline constexpr double kSlender = 8;
 
-/// Vertices that fill a gap beside a piece of a facet, which has another one across it; and along a piece of a segment. Within a quarter of what squares
-/// and ribbons take that are 0.01 to 0.001 of their size from a wall.
+/// Vertices that fill a gap beside a piece of a facet, which has another one across it; and along a piece of a segment. Within a quarter of what
+/// squares and ribbons take that are 0.01 to 0.001 of their size from a wall.
 inline double vertices_beside_facet(double area, double width) { return 0.5 * area / (width * width); }
 inline double vertices_beside_segment(double length, double width) { return 3 * length / width; }
 
@@ -26,10 +26,12 @@ struct Halvings {
     unsigned least = 0, most = 6;
 };
 
-/// Halves a triangle's longest side until the gap is about as wide everywhere, or wider than the piece. @param widths  local feature sizes at its corners
+/// Halves a triangle's longest side until the gap is about as wide everywhere, or wider than the piece.
+/// @param widths  local feature sizes at its corners
 /// @param emit  (area, width) of a piece
 template <class Emit>
-void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 3>& corners, const std::array<double, 3>& widths, Emit&& emit, Halvings halvings = {}) {
+void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 3>& corners, const std::array<double, 3>& widths, Emit&& emit,
+                Halvings halvings = {}) {
     const auto [least, most] = std::minmax_element(widths.begin(), widths.end());
     std::array<double, 3> squares{};  // of the sides opposite each corner
     for (std::size_t i = 0; i < 3; ++i) squares[i] = squared_distance(corners[(i + 1) % 3], corners[(i + 2) % 3]);

@@ -13,7 +13,7 @@
 
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
-#include "wellmesh/delaunay.hpp"
+#include "delaunay/triangulation.hpp"
 
 namespace wellmesh::testing {
 namespace {
@@ -165,10 +165,14 @@ Plc random_complex(std::uint64_t seed) {
         const double x = draw(seed, n), y = draw(seed, n), z = draw(seed, n);
         points.push_back({x * shape.x, y * shape.y, z * shape.z});
     }
-    const DelaunayResult delaunay = triangulate_points(points);
+    Triangulation delaunay({0, 0, 0}, shape);
+    delaunay.insert_all(points);
     std::set<std::array<std::uint32_t, 3>> faces;
     std::set<std::array<std::uint32_t, 2>> edges;
-    for (std::array<std::uint32_t, 4> t : delaunay.mesh.tets) {
+    for (std::size_t slot = 0; slot < delaunay.tets().slots(); ++slot) {
+        if (!delaunay.tets().is_finite(TetId{slot})) continue;
+        std::array<std::uint32_t, 4> t{};
+        for (unsigned i = 0; i < 4; ++i) t[i] = delaunay.tets().corner(TetId{slot}, i).value();
         std::sort(t.begin(), t.end());
         for (std::size_t i = 0; i < 4; ++i)
             for (std::size_t j = i + 1; j < 4; ++j) {

@@ -29,8 +29,9 @@ struct StagedMesh {
     BoundaryRefiner boundary;
     Workers workers{1};
 
-    explicit StagedMesh(const Plc& input, const MeshOptions& wanted = {})
-        : options(wanted), plc(validate(input, options)), guard(options.limits, control), mesh(plc), acute(plc), boundary(mesh, guard, options.seed, acute) {}
+    /// @param has_narrow_gaps  as of AcuteGeometry
+    explicit StagedMesh(const Plc& input, const MeshOptions& wanted = {}, bool has_narrow_gaps = false)
+        : options(wanted), plc(validate(input, options)), guard(options.limits, control), mesh(plc), acute(plc, has_narrow_gaps), boundary(mesh, guard, options.seed, acute) {}
     StagedMesh(const StagedMesh&) = delete;
     StagedMesh& operator=(const StagedMesh&) = delete;
 

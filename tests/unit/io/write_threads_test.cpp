@@ -8,9 +8,12 @@
 #include <iterator>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
+#include "support/any_threads.hpp"
 #include "support/grid_mesh.hpp"
 #include "wellmesh/io.hpp"
 
@@ -37,15 +40,12 @@ TEST(WriteThreads, SameBytes) {
     for (const bool weighted : {false, true}) {
         if (weighted)
             for (std::size_t v = 0; v < mesh.vertices.size(); ++v) mesh.weights.push_back(1e-3 * unit_double(mix64(v, 2)));
-        for (const int version : {41, 22})
-            for (const char* name : {"m.mesh", "m.vtu", "m.msh", "m.inp", "m.node"}) {
-                SCOPED_TRACE(name);
-                WriteOptions options;
-                options.msh_version = version;
-                const auto one = written(mesh, name, options, 1);
-                EXPECT_GE(one.size(), 1U);
-                for (const unsigned threads : {2U, 3U, 8U}) EXPECT_TRUE(one == written(mesh, name, options, threads)) << threads;
-            }
+        for (const auto& [name, version] : std::vector<std::pair<std::string, int>>{{"m.mesh", 41}, {"m.vtu", 41}, {"m.msh", 41}, {"m.msh", 22}, {"m.inp", 41}, {"m.node", 41}}) {
+            SCOPED_TRACE(name);
+            WriteOptions options;
+            options.msh_version = version;
+            EXPECT_GE(testing::same_for_any_threads([&](unsigned threads) { return written(mesh, name, options, threads); }).size(), 1U);
+        }
     }
 }
 
