@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes inputs with acute angles and narrow gaps made by code (acute_inputs.py, gap_inputs.py); an independent referee judges each mesh; one row an input and place.
+"""Meshes inputs with acute angles and narrow gaps made by code (acute_inputs.py, gap_inputs.py); an independent referee judges each mesh; one row each.
 
     benchmarks/acute_families.py --referee JUDGE [--program build/release/bin/wellmesh] [--quick] [--family fan] [--tetgen tetgen]
 

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_set>
 
+#include "conforming/edge_lookup.hpp"
 #include "core/vec3_math.hpp"
 #include "quality/tet_shape.hpp"
 #include "validation/gap_demand.hpp"
@@ -56,8 +58,18 @@ ThinGaps::ThinGaps(const ConformingMesh& mesh, double most_vertices, const std::
     std::size_t first = 0;  // those before it take next to nothing
     constexpr double kNextToNothing = 0.1;
     for (double sum = 0; first < candidates.size() && (sum += candidates[first].most) <= kNextToNothing * most_vertices;) ++first;
-    for (std::size_t i = first; i < candidates.size(); ++i)
-        if (!is_forced(candidates[i].tet)) sample(mesh, candidates[i]);
+    std::unordered_set<std::uint64_t> sampled;  // edges are beside several tetrahedra; each is looked up, in no order
+    for (std::size_t i = first; i < candidates.size(); ++i) {
+        const Candidate& candidate = candidates[i];
+        if (is_forced(candidate.tet)) continue;
+        if (!candidate.far.valid()) {
+            sample_face(mesh, candidate);
+            continue;
+        }
+        const auto& corners = mesh.tets().corners(candidate.tet);
+        const std::uint64_t key = edge_key(corners[kEdgeCorners[candidate.at][0]], corners[kEdgeCorners[candidate.at][1]]);
+        if (!sampled.contains(key) && sample_edge(mesh, candidate)) sampled.insert(key);
+    }
     choose(most_vertices);
     if (!any()) feature_size_.reset();
     samples_ = {};
@@ -96,20 +108,24 @@ void ThinGaps::list_edges(const ConformingMesh& mesh, TetId t, std::vector<Candi
     }
 }
 
-/// What a piece really takes, if there is a gap at all.
-void ThinGaps::sample(const ConformingMesh& mesh, const Candidate& candidate) {
+/// What a piece of a segment really takes. @return whether there is a gap at all
+bool ThinGaps::sample_edge(const ConformingMesh& mesh, const Candidate& candidate) {
     const LocalFeatureSize& size = *feature_size_;
     const auto& c = mesh.tets().corners(candidate.tet);
-    if (candidate.far.valid()) {
-        const VertexId a = c[kEdgeCorners[candidate.at][0]], b = c[kEdgeCorners[candidate.at][1]];
-        if (!are_apart(mesh, a, candidate.far) && !are_apart(mesh, b, candidate.far)) return;
-        const std::array ends{mesh.point(a), mesh.point(b)};
-        sample_gap(size, ends, {size(ends[0]), size(ends[1])}, [&](double length, double width) {
-            if (candidate.height < kSameGap * width) samples_.push_back({width, vertices_beside_segment(length, width), a, candidate.far});
-        });
-        return;
-    }
-    const VertexId far = c[candidate.at];
+    const VertexId a = c[kEdgeCorners[candidate.at][0]], b = c[kEdgeCorners[candidate.at][1]];
+    if (!are_apart(mesh, a, candidate.far) && !are_apart(mesh, b, candidate.far)) return false;
+    const std::size_t before = samples_.size();
+    const std::array ends{mesh.point(a), mesh.point(b)};
+    sample_gap(size, ends, {size(ends[0]), size(ends[1])}, [&](double length, double width) {
+        if (candidate.height < kSameGap * width) samples_.push_back({width, vertices_beside_segment(length, width), a, candidate.far});
+    });
+    return samples_.size() > before;
+}
+
+/// The same of a facet.
+void ThinGaps::sample_face(const ConformingMesh& mesh, const Candidate& candidate) {
+    const LocalFeatureSize& size = *feature_size_;
+    const VertexId far = mesh.tets().corners(candidate.tet)[candidate.at];
     const ValidPlc& plc = mesh.plc();
     const std::size_t facet = plc.vertices.size() + plc.segments.size() + mesh.labels(candidate.tet).facets[candidate.at].index();
     if (size.incident(static_cast<std::uint32_t>(facet), feature_of(mesh, far))) return;

@@ -56,7 +56,8 @@ private:
     };
     void list_faces(const ConformingMesh& mesh, TetId t, std::vector<Candidate>& out) const;
     void list_edges(const ConformingMesh& mesh, TetId t, std::vector<Candidate>& out) const;
-    void sample(const ConformingMesh& mesh, const Candidate& candidate);
+    void sample_face(const ConformingMesh& mesh, const Candidate& candidate);
+    bool sample_edge(const ConformingMesh& mesh, const Candidate& candidate);
     void choose(double most_vertices);
     [[nodiscard]] bool are_apart(const ConformingMesh& mesh, VertexId u, VertexId v) const;
     [[nodiscard]] bool is_beside_left(const ConformingMesh& mesh, VertexId v) const;

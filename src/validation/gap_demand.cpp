@@ -27,8 +27,9 @@ double vertices_for_gaps(const ValidPlc& plc, double enough) {
         }
     for (const ValidSegment& s : plc.segments) {
         const Vec3 &a = plc.vertices[s.ends[0].index()], &b = plc.vertices[s.ends[1].index()];
+        const double whole = distance(a, b);
         sample_gap(size, std::array{a, b}, std::array{at_vertex[s.ends[0].index()], at_vertex[s.ends[1].index()]}, [&](double length, double width) {
-            if (length > kSlender * width) sum += vertices_beside_segment(length, width);
+            if (whole > kSlender * width) sum += vertices_beside_segment(length, width);
         });
         if (sum > enough) return sum;
     }

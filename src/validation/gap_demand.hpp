@@ -26,6 +26,17 @@ struct Halvings {
     unsigned least = 0, most = 6;
 };
 
+/// The width with the same mean of 1 / width^2 as a triangle over which the width goes linearly from corner to corner: the mean of f'' is twice the divided
+/// difference of f [Hermite-Genocchi], here of -log. One small width, at the end of a gap, counts for little.
+inline double width_of_like_triangle(std::array<double, 3> widths) {
+    std::sort(widths.begin(), widths.end());
+    const auto& [a, b, c] = widths;
+    constexpr double kAlike = 1.01;  // differences of logarithms tell nothing
+    if (!(c > kAlike * a)) return (a + b + c) / 3;
+    const auto slope = [](double from, double to) { return to > from ? -std::log1p((to - from) / from) / (to - from) : -1 / from; };
+    return 1 / std::sqrt(2 * (slope(b, c) - slope(a, b)) / (c - a));
+}
+
 /// Halves a triangle's longest side until the gap is about as wide everywhere, or wider than the piece.
 /// @param widths  local feature sizes at its corners
 /// @param emit  (area, width) of a piece
@@ -37,10 +48,7 @@ void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 3>& corners
     for (std::size_t i = 0; i < 3; ++i) squares[i] = squared_distance(corners[(i + 1) % 3], corners[(i + 2) % 3]);
     const auto k = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
     if (halvings.most == 0 || !(*most > 2 * *least || halvings.least > 0) || !(squares[k] > *least * *least)) {
-        // Of three corners one may be at the end of the gap, beside something smaller.
-        std::array<double, 3> sorted = widths;
-        std::sort(sorted.begin(), sorted.end());
-        emit(0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0])), sorted[1]);
+        emit(0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0])), width_of_like_triangle(widths));
         return;
     }
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;

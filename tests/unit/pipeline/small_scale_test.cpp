@@ -9,6 +9,7 @@
 
 #include "core/vec3_math.hpp"
 #include "support/expect_result.hpp"
+#include "support/gap_plcs.hpp"
 #include "support/synthetic_plcs.hpp"
 #include "wellmesh/generate.hpp"
 
@@ -152,6 +153,49 @@ TEST(NarrowGaps, AreLeftWhereTheyTakeMoreThanIsAllowed) {
     EXPECT_TRUE(result.statistics.gaps);
     EXPECT_LT(result.mesh.vertices.size(), 500U);
     EXPECT_GE(result.certificate.unexempt.min_dihedral_angle_deg, 20);
+}
+
+void add_box(Plc& plc, const Vec3& low, const Vec3& high) {
+    const auto first = static_cast<std::uint32_t>(plc.vertices.size());
+    for (unsigned k = 0; k < 8; ++k) plc.vertices.push_back({(k & 1U) != 0 ? high.x : low.x, (k & 2U) != 0 ? high.y : low.y, (k & 4U) != 0 ? high.z : low.z});
+    for (const auto& f : {std::array{0U, 1U, 3U, 2U}, {4U, 5U, 7U, 6U}, {0U, 1U, 5U, 4U}, {2U, 3U, 7U, 6U}, {0U, 2U, 6U, 4U}, {1U, 3U, 7U, 5U}})
+        add_facet(plc, {first + f[0], first + f[1], first + f[2], first + f[3]});
+}
+
+/// Two long edges near each other, and a cavity as flat: the edges would take most vertices.
+TEST(NarrowGaps, BetweenEdgesAreLeftToo) {
+    for (const double gap : {1e-5, 1e-6, 1e-7})
+        for (const std::uint64_t rotation : {0U, 5U})
+            for (const bool is_slit : {false, true}) {
+                SCOPED_TRACE(gap);
+                Plc plc = cube();
+                if (is_slit) {
+                    add_box(plc, {0.3, 0.3, 0.5}, {0.7, 0.7, 0.5 + gap});
+                    plc.hole_seeds.push_back({0.5, 0.5, 0.5 + gap / 2});
+                } else {
+                    const auto first = static_cast<std::uint32_t>(plc.vertices.size());
+                    for (const Vec3& p : {Vec3{0.2, 0.5, 0.5}, Vec3{0.8, 0.5, 0.5}, Vec3{0.8, 0.5, 0.5 + gap}, Vec3{0.2, 0.5, 0.5 + gap}}) plc.vertices.push_back(p);
+                    add_facet(plc, {first, first + 1, first + 2, first + 3});
+                }
+                const MeshResult result = generate(transformed(plc, rotation, 0, 1), {});
+                expect_valid(result);
+                EXPECT_LT(result.mesh.vertices.size(), 5000U);
+                EXPECT_TRUE(result.statistics.gaps);
+                EXPECT_GE(result.certificate.unexempt.min_dihedral_angle_deg, 20);
+                EXPECT_LE(result.certificate.unexempt.max_radius_edge_ratio, 2);
+            }
+}
+
+/// While it is filled the facets on its sides have thousands of vertices, and holes that wait for each other to be mended.
+TEST(NarrowGaps, AreFilledAlongTiltedFacets) {
+    Plc plc = cube();
+    const auto first = static_cast<std::uint32_t>(plc.vertices.size());
+    for (const Vec3& p : {Vec3{0.3, 0.3, 0.006}, Vec3{0.7, 0.3, 0.006}, Vec3{0.7, 0.7, 0.008}, Vec3{0.3, 0.7, 0.008}}) plc.vertices.push_back(p);
+    add_facet(plc, {first, first + 1, first + 2, first + 3});
+    const MeshResult result = generate(plc, {});
+    expect_valid(result);
+    EXPECT_EQ(result.termination, Termination::goals_met);
+    EXPECT_GT(result.mesh.vertices.size(), 1000U);
 }
 
 }  // namespace

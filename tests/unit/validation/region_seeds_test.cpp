@@ -81,6 +81,22 @@ TEST(RegionSeeds, ConflictsSayWhere) {
     }
 }
 
+/// The digits of a file may put a seed on the other side of a facet, but say where it is; rounding of doubles does not.
+TEST(RegionSeeds, AreTakenAsTheyAreWithinTheRoundingOfAFile) {
+    for (const double off : {1e-6, 1e-15}) {
+        Plc plc = cube_with_internal_facet();
+        plc.relative_rounding = 1e-6;
+        plc.region_seeds.clear();
+        plc.region_seeds.push_back({{1 - off, 0.5, 0.5}, 9, 0});
+        const Diagnosis d = diagnose(plc);
+        EXPECT_EQ(count(d, DefectKind::seed_on_facet), 1U) << listing(d);
+        EXPECT_EQ(d.has_errors(), off < 1e-12) << listing(d);
+        if (!d.has_errors()) {
+            EXPECT_EQ(d.cells[1].region, 9);
+        }
+    }
+}
+
 TEST(RegionSeeds, OpenSurfacesOfComplexesAreLocated) {
     Plc plc = cube();
     plc.facets.pop_back();
