@@ -22,7 +22,7 @@ class EdgeLookup {
 public:
     void clear() { entries_.clear(); }
     void add(std::uint64_t key, std::size_t number) { entries_.emplace_back(key, static_cast<std::uint32_t>(number)); }
-    /// To be called after the last add().
+    /// To be called after the last add(), and again after more of them.
     void finish() {
         if (entries_.size() > kFewEdges) std::sort(entries_.begin(), entries_.end());
     }

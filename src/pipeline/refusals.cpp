@@ -76,8 +76,8 @@ void refuse_hopeless(const Limits& limits, double expected) {
 }
 
 double most_for_gaps(const Limits& limits, double vertices, double for_size) {
-    constexpr double kFewSeconds = 1e5;
-    return limits.max_vertices ? static_cast<double>(*limits.max_vertices) : kFewSeconds + 10 * std::max(vertices, for_size);
+    constexpr double kAnyway = 1e5;
+    return limits.max_vertices ? static_cast<double>(*limits.max_vertices) : kAnyway + 10 * std::max(vertices, for_size);
 }
 
 bool is_refuted(const Certificate& certificate) { return std::any_of(certificate.claims.begin(), certificate.claims.end(), is_broken); }

@@ -254,7 +254,7 @@ RunGuard::Verdict Refiner::drain() {
 /// What could not be split before the boundary was whole again.
 void Refiner::requeue_beside_holes() {
     for (const BadTetQueue::Entry& e : std::exchange(beside_holes_, {})) {
-        if (!mesh_.tets().is_live(e.tet) || !mesh_.tets().is_finite(e.tet) || BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) != e.fingerprint) continue;
+        if (!mesh_.tets().is_finite(e.tet) || BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) != e.fingerprint) continue;
         if (mesh_.in_domain(e.tet)) enqueue({e.tet});
     }
 }
