@@ -24,30 +24,30 @@ constexpr std::array kBelow{5U, 10U, 15U, 20U};
 
 using Cell = std::pair<std::string, std::string>;  // column, value
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
+std::string in_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 template <class T>
-std::string number(const std::optional<T>& value) {
+std::string in_cell(const std::optional<T>& value) {
     return value ? fmt::format("{}", *value) : std::string();
 }
 
 /// Every column of the table, in order.
 std::vector<Cell> cells(const StudyRow& row) {
-    std::vector<Cell> out{{"model", row.model}, {"strategy", row.strategy}, {"theta_deg", number(row.theta)}, {"seed", number(row.seed)}, {"size", number(row.size)},
+    std::vector<Cell> out{{"model", row.model}, {"strategy", row.strategy}, {"theta_deg", in_cell(row.theta)}, {"seed", in_cell(row.seed)}, {"size", in_cell(row.size)},
                           {"status", row.status}};
     const auto add = [&](std::string column, const std::string& value) { out.emplace_back(std::move(column), row.has_mesh() ? value : std::string()); };
     add("vertices", fmt::format("{}", row.vertices));
-    out.emplace_back("almost_good_vertices", number(row.almost_good_vertices));
-    add("vertices_over_almost_good", row.almost_good_vertices ? number(static_cast<double>(row.vertices) / static_cast<double>(*row.almost_good_vertices)) : std::string());
+    out.emplace_back("almost_good_vertices", in_cell(row.almost_good_vertices));
+    add("vertices_over_almost_good", row.almost_good_vertices ? in_cell(static_cast<double>(row.vertices) / static_cast<double>(*row.almost_good_vertices)) : std::string());
     add("tets", fmt::format("{}", row.all.tets));
     // Without a tetrahedron inside (or at the boundary) there is no extreme there.
-    const auto extreme = [](const ShapeStatistics& s, double value) { return s.tets > 0 ? number(value) : std::string(); };
+    const auto extreme = [](const ShapeStatistics& s, double value) { return s.tets > 0 ? in_cell(value) : std::string(); };
     add("min_dihedral_interior_deg", extreme(row.interior, row.interior.min_dihedral_angle_deg));
     add("min_dihedral_boundary_deg", extreme(row.boundary, row.boundary.min_dihedral_angle_deg));
     add("max_dihedral_interior_deg", extreme(row.interior, row.interior.max_dihedral_angle_deg));
     add("max_dihedral_boundary_deg", extreme(row.boundary, row.boundary.max_dihedral_angle_deg));
-    add("max_radius_edge", number(row.all.max_radius_edge_ratio));
-    add("max_aspect_ratio", number(row.all.max_aspect_ratio));
-    add("min_sigma", number(row.all.min_sigma));
+    add("max_radius_edge", in_cell(row.all.max_radius_edge_ratio));
+    add("max_aspect_ratio", in_cell(row.all.max_aspect_ratio));
+    add("min_sigma", in_cell(row.all.min_sigma));
     for (const unsigned degrees : kBelow) add(fmt::format("tets_below_{}_deg", degrees), fmt::format("{}", row.tets_below(degrees)));
     for (std::size_t i = 0; i < kStudyStages.size(); ++i) add(fmt::format("seconds_{}", to_string(kStudyStages[i])), fmt::format("{:.4f}", row.stage_seconds[i]));
     out.emplace_back("seconds", fmt::format("{:.4f}", row.seconds));

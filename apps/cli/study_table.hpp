@@ -13,6 +13,8 @@
 
 namespace wellmesh::cli {
 
+inline constexpr std::array kStudyStages{Stage::validate, Stage::delaunay, Stage::conform, Stage::refine, Stage::shape, Stage::extract, Stage::certify};
+
 /// One run. Names of columns and their meaning: docs/study.md.
 struct StudyRow {
     std::string model, strategy;
@@ -23,7 +25,7 @@ struct StudyRow {
     std::optional<std::uint64_t> almost_good_vertices{};
     std::uint64_t vertices = 0;     ///< 0: no mesh; the fields below mean nothing then
     ShapeStatistics all{}, interior{}, boundary{};
-    std::array<double, 6> stage_seconds{};  ///< in the order of kStudyStages
+    std::array<double, kStudyStages.size()> stage_seconds{};  ///< in the order of kStudyStages
     double seconds = 0;
     bool proven = false;
     std::string error;              ///< what the error said, or which claim was refuted
@@ -31,7 +33,6 @@ struct StudyRow {
     [[nodiscard]] bool has_mesh() const { return vertices > 0; }
     [[nodiscard]] std::uint64_t tets_below(unsigned degrees) const;  ///< a multiple of 5
 };
-inline constexpr std::array kStudyStages{Stage::validate, Stage::delaunay, Stage::conform, Stage::refine, Stage::shape, Stage::certify};
 
 /// Fills in what the result of a run says.
 void take_result(StudyRow& row, const MeshResult& result);

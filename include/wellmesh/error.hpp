@@ -27,7 +27,7 @@ enum class ErrorCode {
     internal_invariant,  ///< 70: a bug; please report
 };
 
-enum class Stage { read, validate, delaunay, conform, refine, shape, certify, write };
+enum class Stage { read, validate, delaunay, conform, refine, shape, extract, certify, write };
 
 enum class EntityKind { vertex, segment, facet, region, tetrahedron, triangle, edge, file };
 

@@ -5,24 +5,12 @@
 #include <cmath>
 
 #include "conforming/place_point.hpp"
+#include "core/infinity.hpp"
 #include "core/vec3_math.hpp"
+#include "validation/closest_points.hpp"
 
 namespace wellmesh {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double distance_to_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
-    const double t = std::clamp(dot(p - a, b - a) / squared_norm(b - a), 0.0, 1.0);
-    return distance(a + t * (b - a), p);
-}
-
-double distance_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-    const Vec3 n = cross(b - a, c - a);
-    const bool above = dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
-    if (above) return std::abs(dot(p - a, n)) / norm(n);
-    return std::min({distance_to_segment(a, b, p), distance_to_segment(b, c, p), distance_to_segment(c, a, p)});
-}
 
 }  // namespace
 
@@ -78,7 +66,7 @@ std::optional<Carrier> CarrierFinder::find(const Vec3& p, std::int32_t facet, st
                      } else if (i < vertices + segments) {
                          const auto s = static_cast<std::uint32_t>(i - vertices);
                          const auto& ends = plc_.segments[s].ends;
-                         const double d = distance_to_segment(plc_.vertices[ends[0].index()], plc_.vertices[ends[1].index()], p);
+                         const double d = distance_to_segment(p, plc_.vertices[ends[0].index()], plc_.vertices[ends[1].index()]);
                          if (d <= tolerance_) line.offer(s, d, segment > 0 && s + 1 == static_cast<std::uint32_t>(segment));
                      } else {
                          const auto t = static_cast<std::uint32_t>(i - vertices - segments);
@@ -97,7 +85,7 @@ double CarrierFinder::distance_to_facets(const Vec3& p) const {
     double nearest = kInfinity;
     for (const ValidFacet& f : plc_.facets)
         for (const auto& t : f.triangles)
-            nearest = std::min(nearest, distance_to_triangle(plc_.vertices[t[0].index()], plc_.vertices[t[1].index()], plc_.vertices[t[2].index()], p));
+            nearest = std::min(nearest, distance_to_triangle(p, plc_.vertices[t[0].index()], plc_.vertices[t[1].index()], plc_.vertices[t[2].index()]));
     return nearest;
 }
 

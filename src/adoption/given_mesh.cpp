@@ -14,15 +14,15 @@
 namespace wellmesh {
 namespace {
 
-constexpr Stage kStage = Stage::delaunay;
+constexpr Stage kGivenStage = Stage::delaunay;
 
 void check_vertices(const TetMesh& mesh) {
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         const Vec3& p = mesh.vertices[v];
         if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
-            throw MeshError(ErrorCode::bad_input, kStage, fmt::format("vertex {} of the mesh is not finite", v + 1), {{EntityKind::vertex, v + 1, p}});
+            throw MeshError(ErrorCode::bad_input, kGivenStage, fmt::format("vertex {} of the mesh is not finite", v + 1), {{EntityKind::vertex, v + 1, p}});
         if (!in_exact_range(p))
-            throw MeshError(ErrorCode::coordinate_range, kStage,
+            throw MeshError(ErrorCode::coordinate_range, kGivenStage,
                             fmt::format("vertex {} of the mesh, ({}, {}, {}), is outside the range {} to {} in which the predicates are exact", v + 1, p.x, p.y, p.z,
                                         kMinMagnitude, kMaxMagnitude),
                             {{EntityKind::vertex, v + 1, p}});
@@ -35,10 +35,10 @@ void check_corners(const std::vector<std::array<std::uint32_t, N>>& elements, st
         auto sorted = elements[i];
         std::sort(sorted.begin(), sorted.end());
         if (sorted.back() >= vertices)
-            throw MeshError(ErrorCode::bad_input, kStage, fmt::format("{} {} has a corner {}; the mesh has {} vertices", to_string(kind), i + 1, sorted.back() + 1, vertices),
+            throw MeshError(ErrorCode::bad_input, kGivenStage, fmt::format("{} {} has a corner {}; the mesh has {} vertices", to_string(kind), i + 1, sorted.back() + 1, vertices),
                             {{kind, i + 1, {}}});
         if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-            throw MeshError(ErrorCode::bad_input, kStage, fmt::format("{} {} has a corner twice", to_string(kind), i + 1), {{kind, i + 1, {}}});
+            throw MeshError(ErrorCode::bad_input, kGivenStage, fmt::format("{} {} has a corner twice", to_string(kind), i + 1), {{kind, i + 1, {}}});
     }
 }
 
@@ -86,7 +86,7 @@ std::vector<std::array<std::uint32_t, 3>> find_hull(const std::vector<std::array
 }  // namespace
 
 GivenMesh inspect_given_mesh(const TetMesh& mesh) {
-    if (mesh.tets.empty()) throw MeshError(ErrorCode::bad_input, kStage, "the mesh has no tetrahedra");
+    if (mesh.tets.empty()) throw MeshError(ErrorCode::bad_input, kGivenStage, "the mesh has no tetrahedra");
     check_vertices(mesh);
     check_corners(mesh.tets, mesh.vertices.size(), EntityKind::tetrahedron);
     check_corners(mesh.subfaces, mesh.vertices.size(), EntityKind::triangle);

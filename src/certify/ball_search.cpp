@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/infinity.hpp"
 #include "core/vec3_math.hpp"
 
 namespace wellmesh::certifying {
@@ -53,7 +54,6 @@ BallSearch::BallSearch(const std::vector<Vec3>& points, const std::vector<double
     for (const Vec3& p : points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     if (largest > 0) scale_ = std::ldexp(1.0, -std::ilogb(largest) - 1);
     if (weights_ != nullptr) largest_weight_ = scale_ * *std::max_element(weights.begin(), weights.end()) * scale_;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     root_ = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     for (std::size_t i = 0; i < points.size(); ++i) {
         points_[i] = {scale_ * points[i], static_cast<std::uint32_t>(i)};
@@ -214,7 +214,6 @@ bool BallSearch::excludes(const Ball& ball, const Vec3& point) {
 bool BallSearch::list_near(std::span<const Ball> balls, Neighbourhood& near) const {
     for (std::vector<double>& along : near.at_) along.clear();
     near.numbers_.clear();
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     for (const Ball& ball : balls) {
         // Centre and radius from the least A and the largest N that they may have; 1e-12 is far more than the roundings here.

@@ -10,18 +10,12 @@
 namespace wellmesh::certifying {
 namespace {
 
-using Tet = std::array<std::uint32_t, 4>;
-
 /// Vertices on the equatorial sphere of a hull face that are followed up, on average over a range of faces; a square has one, and a disc full of
 /// triangles whose corners are all on its rim would take for ever.
 constexpr std::size_t kTiesPerFace = 4;
 
 /// Hull faces whose spheres are looked at together.
 constexpr std::size_t kFaces = 16;
-
-std::uint32_t apex(const Tet& tet, const Triangle& face) {
-    return *std::find_if(tet.begin(), tet.end(), [&](std::uint32_t v) { return v != face[0] && v != face[1] && v != face[2]; });
-}
 
 std::uint32_t root(std::vector<std::uint32_t>& parents, std::uint32_t i) {
     while (parents[i] != i) i = parents[i] = parents[parents[i]];

@@ -23,13 +23,6 @@ Triangle sorted(Triangle t) {
     return t;
 }
 
-/// Corner of the tetrahedron that is not on the face; any corner if the tetrahedron repeats a vertex.
-std::uint32_t apex(const std::array<std::uint32_t, 4>& tet, const Triangle& face) {
-    for (const std::uint32_t v : tet)
-        if (v != face[0] && v != face[1] && v != face[2]) return v;
-    return tet[3];
-}
-
 struct ListedTriangle {
     Triangle v{};
     std::uint32_t number = 0;

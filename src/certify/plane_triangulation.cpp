@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "certify/planar_mesh.hpp"
+#include "core/infinity.hpp"
 #include "core/vec3_math.hpp"
 
 namespace wellmesh::certifying {
@@ -61,7 +62,6 @@ private:
 
 std::optional<std::vector<Corners>> triangulate(const std::vector<Vec3>& points, const PlcFacet& facet, const Projection& projected, const Lift& lift) {
     std::vector<Site> sites;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Point2 low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
     for (const auto& polygon : facet.polygons)
         for (const std::uint32_t v : polygon) {

@@ -11,13 +11,13 @@
 #include <tuple>
 #include <utility>
 
+#include "core/infinity.hpp"
 #include "quality/shape_lanes.hpp"
 #include "quality/shape_statistics.hpp"
 
 namespace wellmesh::certifying {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 1e-9;  // far more than the roundings of squares
 constexpr std::size_t kBins = std::tuple_size_v<decltype(ShapeStatistics::min_dihedral_histogram)>;
 

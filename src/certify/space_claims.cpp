@@ -19,8 +19,6 @@
 namespace wellmesh::certifying {
 namespace {
 
-using Tet = std::array<std::uint32_t, 4>;
-
 bool has(const Tet& tet, std::uint32_t v) { return v == tet[0] || v == tet[1] || v == tet[2] || v == tet[3]; }
 
 /// Is `other` on or beyond the outer side of a face of the positive tetrahedron `tet`?

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/infinity.hpp"
 #include "core/vec3_math.hpp"
 #include "predicates/exact_range.hpp"
 
@@ -21,7 +22,6 @@ SuspectMesh::SuspectMesh(const TetMesh& mesh, unsigned threads) : mesh_(mesh), w
     weights_ = mesh.weights;
     for (double& w : weights_)
         if (std::fabs(w) < kMinWeight) w = 0;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Vec3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
     places_.reserve(vertex_count());
     for (const Vec3& p : points()) {

@@ -24,6 +24,14 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 
 using Triangle = std::array<std::uint32_t, 3>;  ///< vertex numbers
 using Edge = std::array<std::uint32_t, 2>;      ///< vertex numbers
+using Tet = std::array<std::uint32_t, 4>;       ///< vertex numbers
+
+/// Corner of the tetrahedron that is not on the face; any corner if the tetrahedron repeats a vertex.
+[[nodiscard]] constexpr std::uint32_t apex(const Tet& tet, const Triangle& face) {
+    for (const std::uint32_t v : tet)
+        if (v != face[0] && v != face[1] && v != face[2]) return v;
+    return tet[3];
+}
 
 /// Face f of a tetrahedron is the triangle of these corners; corner f lies opposite. Seen from outside, they turn counter-clockwise.
 inline constexpr std::array<std::array<std::size_t, 3>, 4> kFaceCorners{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};

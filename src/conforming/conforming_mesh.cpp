@@ -213,6 +213,17 @@ TetId ConformingMesh::find_subsegment(const Subsegment& s) {
 }
 
 TetFace ConformingMesh::find_subface(const Subface& s) {
+    if (s.near.valid() && tri_.may_look_at(s.near)) {
+        const auto& store = tets();
+        unsigned opposite = 0 + 1 + 2 + 3;
+        bool has_all = true;
+        for (const VertexId v : s.corners) {
+            const unsigned at = store.find_corner(s.near, v);
+            has_all = has_all && at < 4;
+            opposite -= at;
+        }
+        if (has_all) return facet_at(TetFace{s.near, opposite}) == s.facet ? TetFace{s.near, opposite} : TetFace{};
+    }
     for (const VertexId v : s.corners)
         if (!tri_.is_inserted(v)) return {};
     const TetFace tf = tri_.find_face(s.corners[0], s.corners[1], s.corners[2]);

@@ -62,6 +62,7 @@ struct Subsegment {
 struct Subface {
     std::array<VertexId, 3> corners{};
     FacetId facet{};
+    TetId near{};  ///< a tetrahedron that had it, if any is known: looked at first
 };
 
 /// Where a point is about to go.
@@ -187,8 +188,9 @@ public:
     // --- zones, for several workers at once (delaunay/zones.hpp)
     /// What each zone may have more of; for moves, which change numbers by little.
     struct ZoneRoom {
-        std::size_t tets = 2048;  ///< and as many records of labels
+        std::size_t tets = 2048;
         std::size_t vertices = 0;
+        std::size_t records = 2048;  ///< of labels
     };
     /// Views of zones, in which vertices move or are inserted. Until they are joined the whole must not be touched.
     [[nodiscard]] std::vector<ConformingMesh> split(Workers& workers, const Zones& zones, const ZoneRoom& room, ZoneViews& parts);

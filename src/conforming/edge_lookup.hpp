@@ -7,12 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/ids.hpp"
+#include "core/edge_key.hpp"
 
 namespace wellmesh {
-
-/// The same for both directions.
-inline std::uint64_t edge_key(VertexId a, VertexId b) { return std::uint64_t{std::min(a, b).value()} << 32 | std::max(a, b).value(); }
 
 /// So many are looked through faster than they are sorted.
 inline constexpr std::size_t kFewEdges = 32;

@@ -16,10 +16,10 @@ public:
         : mesh_(mesh), is_welcome_(is_welcome), may_go_on_(may_go_on) {}
 
     void make_room(std::size_t) override { mesh_.fit_arrays(); }
-    /// Each zone has records of its own, as many more as there are now.
+    /// Each zone has records of its own, as many more as are in use now.
     void split(std::size_t zones) override {
-        const std::size_t share = mesh_.records_.size() / zones + kSpareRecords;
         std::vector<std::uint32_t>& free = mesh_.free_records_;
+        const std::size_t share = (mesh_.records_.size() - free.size()) / zones + kSpareRecords;
         parts_.clear();
         for (std::size_t z = 0; z < zones; ++z) parts_.emplace_back(mesh_, is_welcome_, may_go_on_);
         for (InsideObserver& part : parts_) {

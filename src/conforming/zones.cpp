@@ -21,8 +21,7 @@ std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones&
     }
     tri_.split(workers, zones, room.tets, parts);
     fit_arrays();
-    const std::size_t share = room.tets * zones.count();
-    while (free_records_.size() < share) {
+    while (free_records_.size() < room.records * zones.count()) {
         free_records_.push_back(static_cast<std::uint32_t>(records_.size()));
         records_.push_back(TetLabels{});
     }
@@ -41,7 +40,7 @@ std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones&
         view.cell_ = cell_.view();
         view.record_ = record_.view();
         view.records_ = records_.view();
-        take(free_records_, room.tets, view.free_records_);
+        take(free_records_, room.records, view.free_records_);
         take(spare_vertices_, room.vertices, view.spare_vertices_);
         view.filled_ = filled_;
     }

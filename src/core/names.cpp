@@ -15,6 +15,7 @@ const char* to_string(Stage stage) noexcept {
         case Stage::conform: return "conform";
         case Stage::refine: return "refine";
         case Stage::shape: return "shape";
+        case Stage::extract: return "extract";
         case Stage::certify: return "certify";
         case Stage::write: return "write";
     }

@@ -5,17 +5,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <cstdlib>
 #include <new>
 #include <type_traits>
 #include <utility>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
-
 #include "core/check.hpp"
+#include "core/huge_pages.hpp"
 
 namespace wellmesh {
 
@@ -119,16 +114,6 @@ private:
         constexpr std::size_t kAlignment = std::max<std::size_t>(alignof(T), 64);
         if (owns_ && data_ != nullptr) ::operator delete(data_, std::align_val_t{kAlignment});
     }
-    /// Visits at random miss the translation buffer with 4 kB pages. A hint, nothing depends on it.
-    static void advise_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
-#ifdef __linux__
-        constexpr std::uintptr_t kHugePage = std::uintptr_t{1} << 21;
-        const auto begin = (reinterpret_cast<std::uintptr_t>(data) + kHugePage - 1) & ~(kHugePage - 1);
-        const auto end = (reinterpret_cast<std::uintptr_t>(data) + bytes) & ~(kHugePage - 1);
-        if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-#endif
-    }
-
     T* data_ = nullptr;
     std::size_t size_ = 0, capacity_ = 0;
     bool owns_ = true;

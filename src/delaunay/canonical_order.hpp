@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/shared_array.hpp"
 #include "core/workers.hpp"
 #include "delaunay/tet_store.hpp"
 
@@ -32,9 +33,10 @@ inline TetStore::Corners canonical_corners(const TetStore::Corners& c) {
 }
 
 /// Calls visit(place, tetrahedron, canonical corners) for all live tetrahedra, or all finite ones: place 0, 1, ... in the order of their canonical corners.
-/// Calls for different places come from several threads. @param prepare  called before that with their number
+/// Calls for different places come from several threads. @param prepare  called before that with their number  @param dealt  memory for one number for each of them
 template <bool kGhosts, class Prepare, class Visit>
-void visit_in_canonical_order(const TetStore& tets, std::size_t vertices, Workers& workers, Prepare&& prepare, Visit&& visit) {
+void visit_in_canonical_order(const TetStore& tets, std::size_t vertices, Workers& workers, Prepare&& prepare, Visit&& visit,
+                              SharedArray<std::uint32_t> dealt = {}) {
     constexpr std::size_t kGrain = std::size_t{1} << 15;
     const bool alone = workers.threads() == 1;
     const auto add_one = [alone](std::uint32_t& counter) { return alone ? counter++ : std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed); };
@@ -49,13 +51,14 @@ void visit_in_canonical_order(const TetStore& tets, std::size_t vertices, Worker
         });
     };
     // Tetrahedra are dealt to their last vertices by counting; then each vertex sorts its few.
-    std::vector<std::uint32_t> start(vertices, 0);
+    SharedArray<std::uint32_t> start;
+    start.resize(vertices, 0);
     for_all([&](TetId t) { add_one(start[largest(tets.corners(t))]); });
     std::uint32_t total = 0;
     for (std::uint32_t& s : start) total += std::exchange(s, total);
     prepare(std::size_t{total});
-    std::vector<TetId> dealt(total);
-    for_all([&](TetId t) { dealt[add_one(start[largest(tets.corners(t))])] = t; });
+    dealt.resize_as_is(total);
+    for_all([&](TetId t) { dealt[add_one(start[largest(tets.corners(t))])] = t.value(); });
     // Each start has moved on to the next one's. Of a last vertex's tetrahedra no two agree in second and third corner: they would overlap.
     struct Entry {
         std::uint64_t key;
@@ -71,8 +74,8 @@ void visit_in_canonical_order(const TetStore& tets, std::size_t vertices, Worker
             mine.resize(std::max<std::size_t>(mine.size(), count));
             for (std::uint32_t i = 0; i < count; ++i) {
                 constexpr std::uint32_t kAhead = 24;
-                const TetId t = dealt[first + i];
-                if (first + i + kAhead < total) tets.prefetch(dealt[first + i + kAhead]);
+                const TetId t{dealt[first + i]};
+                if (first + i + kAhead < total) tets.prefetch(TetId{dealt[first + i + kAhead]});
                 const TetStore::Corners c = canonical_corners(tets.corners(t));
                 mine[i] = {std::uint64_t{c[1].value()} << 32 | c[2].value(), c[3], t};
             }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The conflict test and the search for the cavity of a point, without changing anything.
-#include <limits>
 #include <utility>
 
+#include "core/infinity.hpp"
 #include "delaunay/triangulation.hpp"
 
 namespace wellmesh {
 
 void Triangulation::ensure_marks() {
-    if (mark_.size() < tets_.slots()) mark_.resize(tets_.slots() + tets_.slots() / 8 + 64, 0);
+    if (mark_.size() >= tets_.slots()) return;
+    mark_.reserve(tets_.capacity());  // lest they be copied again and again while the tetrahedra fill what was reserved for them
+    mark_.resize(tets_.slots() + tets_.slots() / 8 + 64, 0);
 }
 
 void Triangulation::next_epoch() {
@@ -36,7 +38,6 @@ bool Triangulation::in_conflict(TetId t, const Vec3& p) const {
 
 bool Triangulation::find_conflict_cavity(const Vec3& p, TetId near, Cavity& cavity) {
     if (!in_box(p)) {  // the filter's bounds do not hold: do without it
-        constexpr double kInfinity = std::numeric_limits<double>::infinity();
         const PredicateFilter kept = std::exchange(filter_, PredicateFilter(Vec3{kInfinity, kInfinity, kInfinity}));
         const bool found = search_conflict_cavity(p, near, cavity);
         filter_ = kept;

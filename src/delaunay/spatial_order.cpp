@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/huge_pages.hpp"
 #include "core/rng.hpp"
+#include "core/shared_array.hpp"
 #include "delaunay/spatial_order.hpp"
 
 namespace wellmesh {
@@ -56,7 +58,11 @@ std::uint64_t hilbert_key(const std::array<std::uint32_t, 3>& x) {
     return key;
 }
 
-using Keyed = std::pair<std::uint64_t, std::uint32_t>;
+struct Keyed {
+    std::uint64_t key;
+    std::uint32_t point;
+    friend bool operator<(const Keyed& a, const Keyed& b) { return std::pair(a.key, a.point) < std::pair(b.key, b.point); }
+};
 
 /// Sorts by keys, equal ones staying in order: digit by digit from the last one, for it branches on nothing.
 void sort_by_key(std::span<Keyed> run) {
@@ -65,14 +71,15 @@ void sort_by_key(std::span<Keyed> run) {
     const auto digit_of = [](std::uint64_t key, unsigned d) { return static_cast<std::size_t>(key >> (d * kDigitBits)) % kValues; };
     std::vector<std::array<std::uint32_t, kValues>> place(kDigits);
     for (const Keyed& k : run)
-        for (unsigned d = 0; d < kDigits; ++d) ++place[d][digit_of(k.first, d)];
-    std::vector<Keyed> other(run.size());
-    std::span<Keyed> from = run, to = other;
+        for (unsigned d = 0; d < kDigits; ++d) ++place[d][digit_of(k.key, d)];
+    SharedArray<Keyed> other;
+    other.resize_as_is(run.size());
+    std::span<Keyed> from = run, to{other.data(), other.size()};
     for (unsigned d = 0; d < kDigits; ++d) {
-        if (!run.empty() && place[d][digit_of(run[0].first, d)] == run.size()) continue;  // the same everywhere
+        if (!run.empty() && place[d][digit_of(run[0].key, d)] == run.size()) continue;  // the same everywhere
         std::uint32_t total = 0;
         for (std::uint32_t& p : place[d]) total += std::exchange(p, total);
-        for (const Keyed& k : from) to[place[d][digit_of(k.first, d)]++] = k;
+        for (const Keyed& k : from) to[place[d][digit_of(k.key, d)]++] = k;
         std::swap(from, to);
     }
     if (from.data() != run.data()) std::copy(from.begin(), from.end(), run.begin());
@@ -91,7 +98,8 @@ std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, Workers
     const double extent = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
     const double scale = extent > 0 ? static_cast<double>((1U << kBits) - 1) / extent : 0;
     constexpr std::uint64_t kRoundShift = 3 * kBits;
-    std::vector<Keyed> keyed(n);
+    SharedArray<Keyed> keyed;
+    keyed.resize_as_is(n);
     // Each worker sorts a run; then neighbouring runs are merged, in rounds.
     std::size_t run = (n + workers.threads() - 1) / workers.threads();
     workers.for_ranges(n, run, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -105,11 +113,13 @@ std::vector<std::uint32_t> order_by_rounds(std::span<const Vec3> points, Workers
     });
     for (; run < n; run *= 2)
         workers.for_ranges(n, 2 * run, [&](std::size_t begin, std::size_t end, std::size_t) {
-            const auto at = [&](std::size_t i) { return keyed.begin() + static_cast<std::ptrdiff_t>(std::min(i, end)); };
+            const auto at = [&](std::size_t i) { return keyed.data() + std::min(i, end); };
             std::inplace_merge(at(begin), at(begin + run), at(end));
         });
-    std::vector<std::uint32_t> order(n);
-    for (std::size_t i = 0; i < n; ++i) order[i] = keyed[i].second;
+    std::vector<std::uint32_t> order;
+    reserve_on_huge_pages(order, n);
+    order.resize(n);
+    for (std::size_t i = 0; i < n; ++i) order[i] = keyed[i].point;
     return order;
 }
 

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/checkpoint.hpp"
@@ -190,6 +191,8 @@ public:
     Renumbering renumber(Workers& workers);
     /// Gives back memory that searches and changes need: the next one takes it again.
     void release_scratch() { mark_.release(); }
+    /// The same memory for another use: a number for each tetrahedron.
+    [[nodiscard]] SharedArray<std::uint32_t> take_scratch() { return std::exchange(mark_, {}); }
 
     /// Triangulates the hole that v would leave. @return false if v can't go (fewer than four affinely independent points would stay) or its star has more than
     /// `most_tets`.

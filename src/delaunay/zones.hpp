@@ -8,10 +8,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
+#include "core/infinity.hpp"
 #include "core/shared_array.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/triangulation.hpp"
@@ -79,7 +79,6 @@ private:
         cut(points.subspan(half), 2 * node + 1);
     }
     static unsigned longest_axis(std::span<const Vec3> points) {
-        constexpr double kInfinity = std::numeric_limits<double>::infinity();
         std::array<double, 3> low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
         for (const Vec3& p : points)
             for (unsigned a = 0; a < 3; ++a) {

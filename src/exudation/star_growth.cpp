@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "core/infinity.hpp"
 #include "predicates/exact_range.hpp"
 #include "quality/tet_shape.hpp"
 
 namespace wellmesh {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// In place of a cosine: worse than any angle, but a tetrahedron that may come and go while the star grows.
 constexpr double kOutOfBounds = 1.5;

@@ -26,7 +26,7 @@ bool is_face(const PlcFacet& facet) { return facet.polygons.front().size() >= kL
 
 std::size_t face_count(const Plc& plc) { return static_cast<std::size_t>(std::count_if(plc.facets.begin(), plc.facets.end(), is_face)); }
 
-void write_coordinates(OutputFile& out, const Vec3& p) {
+void write_vertex_line(OutputFile& out, const Vec3& p) {
     out.point(p);
     out.character('\n');
 }
@@ -74,7 +74,7 @@ void write_little_endian(OutputFile& out, T value) {
 
 void write_off(const Plc& plc, OutputFile& out) {
     out.text(fmt::format("OFF\n{} {} 0\n", plc.vertices.size(), face_count(plc)));
-    for (const Vec3& p : plc.vertices) write_coordinates(out, p);
+    for (const Vec3& p : plc.vertices) write_vertex_line(out, p);
     for (const PlcFacet& facet : plc.facets) {
         if (!is_face(facet)) continue;
         out.integer(static_cast<std::int64_t>(facet.polygons.front().size()));
@@ -85,7 +85,7 @@ void write_off(const Plc& plc, OutputFile& out) {
 void write_ply(const Plc& plc, OutputFile& out) {
     out.text(fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n", plc.vertices.size()));
     out.text(fmt::format("element face {}\nproperty list int int vertex_indices\nend_header\n", face_count(plc)));
-    for (const Vec3& p : plc.vertices) write_coordinates(out, p);
+    for (const Vec3& p : plc.vertices) write_vertex_line(out, p);
     for (const PlcFacet& facet : plc.facets) {
         if (!is_face(facet)) continue;
         out.integer(static_cast<std::int64_t>(facet.polygons.front().size()));
@@ -96,7 +96,7 @@ void write_ply(const Plc& plc, OutputFile& out) {
 void write_obj(const Plc& plc, OutputFile& out) {
     for (const Vec3& p : plc.vertices) {
         out.text("v ");
-        write_coordinates(out, p);
+        write_vertex_line(out, p);
     }
     const auto faces = faces_by_marker(plc);
     std::map<std::int32_t, std::vector<std::size_t>> segments;
@@ -126,11 +126,11 @@ void write_stl(const Plc& plc, OutputFile& out) {
         for (const std::size_t f : numbers) {
             const auto& c = plc.facets[f].polygons.front();
             out.text("facet normal ");
-            write_coordinates(out, triangle_normal(plc.vertices[c[0]], plc.vertices[c[1]], plc.vertices[c[2]]));
+            write_vertex_line(out, triangle_normal(plc.vertices[c[0]], plc.vertices[c[1]], plc.vertices[c[2]]));
             out.text("outer loop\n");
             for (const std::uint32_t v : c) {
                 out.text("vertex ");
-                write_coordinates(out, plc.vertices[v]);
+                write_vertex_line(out, plc.vertices[v]);
             }
             out.text("endloop\nendfacet\n");
         }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/huge_pages.hpp"
 #include "core/resident_memory.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/spatial_order.hpp"
@@ -80,18 +81,24 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, Workers& workers, I
         }
     }
     for (const std::uint32_t i : spatial_order(steiner_points, workers)) order.push_back(steiner[i]);
-    out.vertices.reserve(order.size());
-    out.vertex_carriers.reserve(order.size());
-    for (const VertexId v : order) {
-        number[v.index()] = static_cast<std::uint32_t>(out.vertices.size());
-        out.vertices.push_back(mesh.point(v));
-        const VertexInfo& info = mesh.info(v);
-        std::uint32_t id = info.carrier_id;
-        if (!plc.vertex_markers.empty()) out.vertex_markers.push_back(info.carrier == CarrierKind::input_vertex ? plc.vertex_markers[id] : 0);
-        if (info.carrier == CarrierKind::input_vertex) id = plc.source_vertex[id];
-        if (info.carrier == CarrierKind::region) id = static_cast<std::uint32_t>(plc.cells[id].region);
-        out.vertex_carriers.push_back({info.carrier, id});
-    }
+    out.vertices.resize(order.size());
+    out.vertex_carriers.resize(order.size());
+    if (!plc.vertex_markers.empty()) out.vertex_markers.assign(order.size(), 0);
+    workers.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const VertexId v = order[i];
+            number[v.index()] = static_cast<std::uint32_t>(i);
+            out.vertices[i] = mesh.point(v);
+            const VertexInfo& info = mesh.info(v);
+            std::uint32_t id = info.carrier_id;
+            if (info.carrier == CarrierKind::input_vertex) {
+                if (!plc.vertex_markers.empty()) out.vertex_markers[i] = plc.vertex_markers[id];
+                id = plc.source_vertex[id];
+            }
+            if (info.carrier == CarrierKind::region) id = static_cast<std::uint32_t>(plc.cells[id].region);
+            out.vertex_carriers[i] = {info.carrier, id};
+        }
+    });
     // Counting sort; counted one place ahead, so that first[v] is where the tetrahedra of v begin.
     const auto lowest = [&](TetId t) {
         const auto& c = tets.corners(t);
@@ -123,6 +130,8 @@ TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order, Work
     order = number_output(mesh, workers, in_output, number, out);
     return_freed_memory();
     const std::size_t count = order.size();
+    reserve_on_huge_pages(out.tets, count);
+    reserve_on_huge_pages(out.tet_regions, count);
     out.tets.resize(count);
     out.tet_regions.resize(count);
     struct Listed {

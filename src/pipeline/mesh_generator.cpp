@@ -245,15 +245,17 @@ private:
             });
         if (!certified && only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
         std::vector<TetId> order;
-        // The mesh will be there twice.
-        mesh.triangulation().release_scratch();
-        return_freed_memory();
-        result_.mesh = extract_mesh(mesh, order, workers_);
-        result_.mesh.names = plc_.names;
-        result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number, workers_);
-        result_.statistics.gaps = gaps_left(result_.exemptions, mesh, refiner, plc_.first_number);
-        if (result_.statistics.gaps) result_.statistics.notes.push_back(describe(*result_.statistics.gaps));
-        size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());
+        timed(Stage::extract, [&] {
+            // The mesh will be there twice.
+            mesh.triangulation().release_scratch();
+            return_freed_memory();
+            result_.mesh = extract_mesh(mesh, order, workers_);
+            result_.mesh.names = plc_.names;
+            result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number, workers_);
+            result_.statistics.gaps = gaps_left(result_.exemptions, mesh, refiner, plc_.first_number);
+            if (result_.statistics.gaps) result_.statistics.notes.push_back(describe(*result_.statistics.gaps));
+            size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());
+        });
         if (verdict == RunGuard::Verdict::go_on && exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {
                 const ExemptionKeeper exempt(result_.mesh, std::move(result_.exemptions));

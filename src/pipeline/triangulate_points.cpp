@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/huge_pages.hpp"
 #include "core/workers.hpp"
 #include "delaunay/canonical_order.hpp"
 #include "delaunay/spatial_order.hpp"
@@ -33,14 +34,20 @@ DelaunayResult triangulate_points(std::span<const Vec3> points, unsigned threads
     const std::vector<std::uint32_t> order = biased_spatial_order(points, workers);
     if (!mesh.insert_all_in_order(points, order, workers)) throw MeshError(ErrorCode::bad_input, Stage::delaunay, "all points lie in one plane: there is no tetrahedron");
     result.duplicates = mesh.duplicate_count();
-    mesh.release_scratch();
     visit_in_canonical_order<false>(
-        mesh.tets(), mesh.vertex_count(), workers, [&](std::size_t n) { result.mesh.tets.resize(n); },
+        mesh.tets(), mesh.vertex_count(), workers,
+        [&](std::size_t n) {
+            reserve_on_huge_pages(result.mesh.tets, n);
+            result.mesh.tets.resize(n);
+        },
         [&](std::size_t place, TetId, const TetStore::Corners& c) {
             result.mesh.tets[place] = {order[c[0].index()], order[c[1].index()], order[c[2].index()], order[c[3].index()]};
-        });
+        },
+        mesh.take_scratch());
     mesh = Triangulation();  // before there is more to hold
+    reserve_on_huge_pages(result.mesh.tet_regions, result.mesh.tets.size());
     result.mesh.tet_regions.assign(result.mesh.tets.size(), 1);
+    reserve_on_huge_pages(result.mesh.vertices, points.size());
     result.mesh.vertices.assign(points.begin(), points.end());
     return result;
 }

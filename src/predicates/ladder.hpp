@@ -20,6 +20,12 @@
 
 namespace wellmesh {
 
+inline std::optional<Sign> negated(std::optional<Sign> sign) {
+    if (sign) sign = -*sign;
+    return sign;
+}
+inline Decision negated(Decision decision) { return {-decision.sign, decision.rung}; }
+
 inline constexpr double kEpsilon = 0x1p-53;
 
 /// Bounds (1 + eps)^n - 1, plus the n roundings of the permanent that it will be multiplied by and a few more: for n <= 100

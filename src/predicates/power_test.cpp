@@ -7,12 +7,6 @@ namespace {
 
 using W = WeightedPoint;
 
-std::optional<Sign> negated(std::optional<Sign> sign) {
-    if (sign) sign = -*sign;
-    return sign;
-}
-Decision negated(Decision decision) { return {-decision.sign, decision.rung}; }
-
 }  // namespace
 
 Decision decide_power_test(const W& a, const W& b, const W& c, const W& d, const W& e) { return climb<PowerFormula>({&a, &b, &c, &d}, e); }

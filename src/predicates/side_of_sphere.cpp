@@ -3,15 +3,6 @@
 #include "predicates/ladder.hpp"
 
 namespace wellmesh {
-namespace {
-
-std::optional<Sign> negated(std::optional<Sign> sign) {
-    if (sign) sign = -*sign;
-    return sign;
-}
-Decision negated(Decision decision) { return {-decision.sign, decision.rung}; }
-
-}  // namespace
 
 Decision decide_side_of_diametral_sphere(const Vec3& a, const Vec3& b, const Vec3& p) {
     return negated(climb<DiametralFormula>({&a, &b}, p));

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <thread>
 
 #include "conforming/place_point.hpp"
+#include "core/infinity.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/spatial_order.hpp"
@@ -20,7 +20,6 @@ namespace {
 constexpr double kClearance = 0.5;
 /// Of the lattice constant: takes exact symmetry away, costs nothing in shape.
 constexpr double kLatticeJitter = 1e-4;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Squared distance from p to the triangle: to its plane if the foot of the perpendicular lies inside, else to the nearest edge.
 double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -7,12 +7,11 @@
 #include <cmath>
 #include <deque>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <unordered_set>
 #include <utility>
 
-#include "conforming/place_point.hpp"
+#include "core/infinity.hpp"
 #include "core/rng.hpp"
 #include "core/shared_guard.hpp"
 #include "core/vec3_math.hpp"
@@ -24,7 +23,6 @@ namespace {
 /// Volume over surface, in lattice constants, from which on a cell is seeded: a plate two layers thick, a cube of six. In thinner ones the gap
 /// between lattice and boundary costs as many vertices as the lattice saves.
 constexpr double kLeastThickness = 1;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Least part of the spacing allowed at which leaves are worth it where the size varies: the lattice has 0.349 vertices a cubed radius of its own,
 /// refinement makes 0.75 of the bound's, and (0.349 / 0.75)^(1/3) / kLatticeScale = 0.82.
 constexpr double kLeastUse = 0.82;
@@ -112,7 +110,10 @@ bool LatticeSeeder::list_too_large(TetId t, double coarseness, std::vector<Subse
     if (!mesh_.has_labels(t) || !tets.is_finite(t)) return false;  // nearly all have none: few of them need be fetched
     const double bound = sizes_.varies() ? 0 : coarseness * radius_bound(t, {});
     if (bound == kInfinity) return false;
-    const auto is_beyond = [&](double radius, const Vec3& p) { return radius > (sizes_.varies() ? coarseness * radius_bound(t, p) : bound); };
+    const auto is_beyond = [&](double squared_radius, const Vec3& p) {
+        const double most = sizes_.varies() ? coarseness * radius_bound(t, p) : bound;
+        return squared_radius > most * most;
+    };
     const TetLabels& l = mesh_.labels(t);
     const auto& c = tets.corners(t);
     const std::size_t before = segments.size() + faces.size();
@@ -120,15 +121,15 @@ bool LatticeSeeder::list_too_large(TetId t, double coarseness, std::vector<Subse
         const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
         if (!l.segments[e].valid()) continue;
         const Vec3 &p = mesh_.point(a), &q = mesh_.point(b);
-        if (is_beyond(distance(p, q) / 2, 0.5 * (p + q))) segments.push_back({std::min(a, b), std::max(a, b), l.segments[e]});
+        if (is_beyond(squared_distance(p, q) / 4, 0.5 * (p + q))) segments.push_back({std::min(a, b), std::max(a, b), l.segments[e]});
     }
     for (unsigned f = 0; f < 4; ++f) {
         if (!l.facets[f].valid()) continue;
         const auto fc = tets.face_corners(TetFace{t, f});
-        double radius = 0;
         const Vec3 &p = mesh_.point(fc[0]), &q = mesh_.point(fc[1]), &r = mesh_.point(fc[2]);
-        circumcentre(p, q, r, &radius);
-        if (is_beyond(radius, (1.0 / 3) * (p + q + r))) faces.push_back({fc, l.facets[f]});
+        const double squared_double_area = squared_norm(cross(q - p, r - p));
+        const double squared_radius = squared_distance(p, q) * squared_distance(q, r) / (4 * squared_double_area) * squared_distance(r, p);
+        if (is_beyond(squared_radius, (1.0 / 3) * (p + q + r))) faces.push_back({fc, l.facets[f], t});
     }
     return segments.size() + faces.size() > before;
 }
@@ -234,7 +235,7 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
         const std::size_t vertices = work / count + kMoreVertices;
         ZoneViews parts;
         std::vector<ConformingMesh> views =
-            mesh_.split(workers_, Zones(std::move(sample), count, turn), {kTetsPerVertex * vertices, vertices}, parts);
+            mesh_.split(workers_, Zones(std::move(sample), count, turn), {.tets = kTetsPerVertex * vertices, .vertices = vertices, .records = kTetsPerVertex * vertices}, parts);
         std::vector<std::vector<TetId>> shares(count);
         for (const TetId t : waiting)
             if (const std::uint8_t zone = parts.zone_of_tet[t.index()]; zone != ZoneViews::kNone) shares[zone].push_back(t);

@@ -77,7 +77,8 @@ void Refiner::drain_zone(const std::function<bool(std::size_t)>& may_go_on) {
 void Refiner::drain_in_zones() {
     constexpr std::size_t kLeastAZone = 256, kSampleAZone = 512;
     // Of ten that wait, nine are gone once one of them is split. A vertex takes seven tetrahedra, or less; who finds no room waits for the next turn.
-    constexpr std::size_t kWaitingPerVertex = 4, kTetsPerVertex = 8, kMoreVertices = 64;
+    // One in four of them may have labels.
+    constexpr std::size_t kWaitingPerVertex = 4, kTetsPerVertex = 8, kRecordsPerVertex = 2, kMoreVertices = 64, kMoreRecords = 512;
     boundary_.prepare_for_zones();
     for (unsigned turn = 0; turn < Zones::kTurns && may_work_in_zones(); ++turn) {
         const auto is_there = [&](const BadTetQueue::Entry& e) { return mesh_.tets().is_finite(e.tet) && BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) == e.fingerprint; };
@@ -94,8 +95,9 @@ void Refiner::drain_in_zones() {
         for (std::size_t k = 0; k * step < work; ++k) sample[k] = sample[k * step];
         sample.resize((work + step - 1) / step);
         const std::size_t vertices = work / (kWaitingPerVertex * count) + kMoreVertices;
+        const ConformingMesh::ZoneRoom room{.tets = kTetsPerVertex * vertices, .vertices = vertices, .records = kRecordsPerVertex * vertices + kMoreRecords};
         ZoneViews parts;
-        std::vector<ConformingMesh> views = mesh_.split(workers_, Zones(std::move(sample), count, turn), {kTetsPerVertex * vertices, vertices}, parts);
+        std::vector<ConformingMesh> views = mesh_.split(workers_, Zones(std::move(sample), count, turn), room, parts);
         std::deque<BoundaryRefiner> boundaries;
         std::vector<std::unique_ptr<Refiner>> zones;
         for (std::size_t z = 0; z < count; ++z) {

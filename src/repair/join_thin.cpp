@@ -15,9 +15,9 @@ namespace {
 
 using Vertex = std::uint32_t;
 using Polygon = std::vector<Vertex>;
-using Edge = std::pair<Vertex, Vertex>;  // ascending
+using AscendingEdge = std::pair<Vertex, Vertex>;
 
-Edge edge(Vertex a, Vertex b) { return {std::min(a, b), std::max(a, b)}; }
+AscendingEdge edge(Vertex a, Vertex b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// Facets and edges that are to be led through vertices.
 class Leader {
@@ -28,7 +28,7 @@ public:
     bool note(Vertex v, std::uint32_t f, double gap) {
         const double most = joined_.statistics.tolerance;
         double nearest = most;
-        Edge through{};
+        AscendingEdge through{};
         for (const Polygon& p : plc_.facets[f].polygons)
             for (std::size_t i = 0; i < p.size(); ++i) {
                 const Vertex a = p[i], b = p[(i + 1) % p.size()];
@@ -152,7 +152,7 @@ private:
 
     JoinedPlc& joined_;
     Plc& plc_;
-    std::map<Edge, std::vector<std::pair<double, Vertex>>> on_edge_;  // by position
+    std::map<AscendingEdge, std::vector<std::pair<double, Vertex>>> on_edge_;  // by position
     std::map<std::uint32_t, Polygon> inside_;
 };
 

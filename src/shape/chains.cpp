@@ -14,7 +14,7 @@ namespace {
 constexpr double kRoughFloor = 0.3;           // of the goal: the least angle that the first steps of a chain may leave for moves to mend,
 constexpr unsigned kMovesInChain = 12;        // so many of them,
 constexpr std::size_t kMostBadInChain = 64;   // if they don't make too many bad tetrahedra themselves
-constexpr unsigned kMoveSamples = 30;
+constexpr unsigned kSamplesInChain = 30;
 constexpr std::size_t kNearest = 3;           // neighbours that may close up
 constexpr double kShove = 0.6;                // of the mean distance of the neighbours
 
@@ -75,7 +75,7 @@ bool Chains::mend() {
         for (const VertexId v : freest_first(mesh_, corners)) {
             if (moved || mesh_.info(v).carrier == CarrierKind::input_vertex) break;
             t = find_tet(mesh_, corners);
-            moved = mover_.move(v, t, judge_.goal(), kMoveSamples);
+            moved = mover_.move(v, t, judge_.goal(), kSamplesInChain);
         }
         if (!moved) return false;
         take_note();

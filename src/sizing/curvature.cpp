@@ -5,6 +5,7 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "core/edge_key.hpp"
 #include "core/vec3_math.hpp"
 #include "sizing/entity_sizes.hpp"
 
@@ -12,8 +13,6 @@ namespace wellmesh {
 namespace {
 
 constexpr double kSmoothTurn = kSmoothTurnDeg * std::numbers::pi / 180;
-
-std::uint64_t edge_key(VertexId a, VertexId b) { return (std::uint64_t{std::min(a, b).value()} << 32U) | std::max(a, b).value(); }
 
 /// A symmetric tensor in the plane of a facet.
 struct Tensor {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sizing/entity_sizes.hpp"
+#include "core/infinity.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -12,7 +12,6 @@
 namespace wellmesh {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostListed = 12;
 
 /// Lowers `sizes` where `id_of(i)` is the wanted one.

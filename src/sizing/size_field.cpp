@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "core/infinity.hpp"
 #include "sizing/point_sizes.hpp"
 #include "validation/box_tree.hpp"
 
 namespace wellmesh {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Samples between which a function grows faster than this part of the gradation are sources: neighbours in an octree lie along 26 directions
 /// only, and along others what they allow of each other comes to up to 1.13 of it.
 constexpr double kSteep = 0.88;

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/infinity.hpp"
 #include "core/vec3_math.hpp"
 #include "validation/local_feature_size.hpp"
 
 namespace wellmesh {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kLeaf = 4;
 
 Vec3 middle_of(const SizeSource& s) {

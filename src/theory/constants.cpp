@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "core/infinity.hpp"
 
 namespace wellmesh {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool in_open_range(double x, double low, double high) { return x > low && x < high; }  // false for NaN
 

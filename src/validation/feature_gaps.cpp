@@ -14,7 +14,7 @@ namespace wellmesh {
 namespace {
 
 /// Pairs listed before the search gives up.
-constexpr std::size_t kMaxListed = 100000;
+constexpr std::size_t kMostGapsListed = 100000;
 
 /// A vertex, or a segment, with a facet or a segment apart from it.
 struct Gap {
@@ -99,7 +99,7 @@ void find_near_misses(const Complexes& complex, double limit, Report& report) {
     finder.visit(
         limit,
         [&](VertexId v, std::uint32_t t, const Gap& gap) {
-            if (at_facets.size() >= kMaxListed) return;
+            if (at_facets.size() >= kMostGapsListed) return;
             const auto [it, fresh] = at_facets.try_emplace({v.value(), complex.groups.group_of[t]}, gap, t);
             if (!fresh && gap.distance < it->second.first.distance) it->second = {gap, t};
         },
@@ -108,7 +108,7 @@ void find_near_misses(const Complexes& complex, double limit, Report& report) {
             // a gap at an end is one between that vertex and a facet, unless there is no facet
             const bool is_wire = s + complex.soup.wires.size() >= finder.segments().size() || t + complex.soup.wires.size() >= finder.segments().size();
             if (!is_wire && (at_end(finder.segments()[s], gap.from) || at_end(finder.segments()[t], gap.to))) return;
-            if (at_segments.size() < kMaxListed) at_segments.push_back({gap, {s, t}});
+            if (at_segments.size() < kMostGapsListed) at_segments.push_back({gap, {s, t}});
         });
     struct Entry {
         Gap gap;

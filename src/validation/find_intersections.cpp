@@ -13,7 +13,7 @@ namespace wellmesh {
 namespace {
 
 /// Pairs listed before the search gives up: a file in which everything meets everything has quadratically many.
-constexpr std::size_t kMaxListed = 100000;
+constexpr std::size_t kMostIntersectionsListed = 100000;
 constexpr std::size_t kBetweenCheckpoints = 256;  // edges
 
 /// Triangles, then wires, then lone vertices, in one numbering.
@@ -46,11 +46,11 @@ public:
                            if (j < i) test_wire_or_vertex(i, j);
                        });
         for (std::size_t e = 0; e < edges_.keys.size() && !full(); ++e) test_folds(e);
-        if (full()) report_.add(DefectKind::self_intersection, Severity::error, {}, fmt::format("there may be more intersections than the {} listed", kMaxListed));
+        if (full()) report_.add(DefectKind::self_intersection, Severity::error, {}, fmt::format("there may be more intersections than the {} listed", kMostIntersectionsListed));
     }
 
 private:
-    [[nodiscard]] bool full() const { return listed_ >= kMaxListed; }
+    [[nodiscard]] bool full() const { return listed_ >= kMostIntersectionsListed; }
     [[nodiscard]] std::size_t first_wire() const { return soup_.triangles.size(); }
     [[nodiscard]] std::size_t first_lone() const { return first_wire() + soup_.wires.size(); }
     [[nodiscard]] std::size_t corners(std::size_t i) const { return i < first_wire() ? 3 : i < first_lone() ? 2 : 1; }

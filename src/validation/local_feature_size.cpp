@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <queue>
 #include <unordered_set>
 
+#include "core/infinity.hpp"
 #include "core/vec3_math.hpp"
 
 namespace wellmesh {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kLeaf = 4;
 
 bool share_a_number(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {

@@ -8,20 +8,11 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/edge_key.hpp"
 #include "core/ids.hpp"
 #include "wellmesh/plc.hpp"
 
 namespace wellmesh {
-
-/// An undirected edge as a key: the smaller vertex in the high half.
-using EdgeKey = std::uint64_t;
-[[nodiscard]] constexpr EdgeKey edge_key(VertexId a, VertexId b) {
-    const std::uint64_t u = a.value(), v = b.value();
-    return u < v ? (u << 32) | v : (v << 32) | u;
-}
-[[nodiscard]] constexpr std::array<VertexId, 2> edge_ends(EdgeKey key) {
-    return {VertexId{static_cast<std::uint32_t>(key >> 32)}, VertexId{static_cast<std::uint32_t>(key)}};
-}
 
 /// An input facet over bit-distinct vertices, without repeated vertices and without copies of itself.
 struct CleanFacet {

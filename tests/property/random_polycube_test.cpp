@@ -15,7 +15,7 @@
 namespace wellmesh::testing {
 namespace {
 
-constexpr std::uint64_t kCases = 40, kGroups = 4;
+constexpr std::uint64_t kCases = 40, kCubeGroups = 4;
 
 void expect_volumes(const RandomPolycube& random, const MeshResult& result) {
     ASSERT_EQ(result.certificate.regions.size(), random.cells_of_region.size());
@@ -31,7 +31,7 @@ void expect_volumes(const RandomPolycube& random, const MeshResult& result) {
 class RandomPolycubes : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(RandomPolycubes, AreMeshedToTheirGoals) {
-    for (std::uint64_t seed = 1 + GetParam() * kCases / kGroups; seed <= (GetParam() + 1) * kCases / kGroups; ++seed) {
+    for (std::uint64_t seed = 1 + GetParam() * kCases / kCubeGroups; seed <= (GetParam() + 1) * kCases / kCubeGroups; ++seed) {
         const RandomPolycube random = random_polycube(seed);
         const std::uint64_t rotation = seed % 3 == 0 ? 0 : mix64(seed);
         const double shift = seed % 5 == 0 ? 1e3 : 0;
@@ -46,7 +46,7 @@ TEST_P(RandomPolycubes, AreMeshedToTheirGoals) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RandomPolycubes, ::testing::Range<std::uint64_t>(0, kGroups));
+INSTANTIATE_TEST_SUITE_P(All, RandomPolycubes, ::testing::Range<std::uint64_t>(0, kCubeGroups));
 
 TEST(RandomPolycubeInput, IsVaried) {
     std::size_t regions = 0, cavities = 0, facets_with_holes = 0, not_a_box = 0;

@@ -172,7 +172,7 @@ TEST(GenerateOnce, ReportsWhatItDid) {
         EXPECT_GE(t.seconds, 0);
         stages.insert(t.stage);
     }
-    EXPECT_EQ(stages, (std::set<Stage>{Stage::validate, Stage::delaunay, Stage::conform, Stage::refine, Stage::shape, Stage::certify}));
+    EXPECT_EQ(stages, (std::set<Stage>{Stage::validate, Stage::delaunay, Stage::conform, Stage::refine, Stage::shape, Stage::extract, Stage::certify}));
     // Carriers are those of the input.
     const Plc plc = transformed(cube_with_internal_facet(), 4, 0, 1);
     for (std::size_t v = 0; v < result.mesh.vertices.size(); ++v)

@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/infinity.hpp"
 #include "core/vec3_math.hpp"
 #include "random_points.hpp"
 #include "support/synthetic_plcs.hpp"
 
 namespace wellmesh::testing {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The largest excess of |F(p) - F(q)| over g |p - q| and the interpolation's error, over F; pairs near and far.
 double steepest(const SizeField& field, double gradation, std::uint64_t seed) {

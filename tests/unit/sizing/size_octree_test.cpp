@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/infinity.hpp"
 #include "core/vec3_math.hpp"
 #include "random_points.hpp"
 
 namespace wellmesh::testing {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 SizeSampling unit_cube(std::function<double(const Vec3&)> f) {
     SizeSampling sampling;

@@ -16,7 +16,7 @@
 namespace wellmesh::testing {
 namespace {
 
-const TheoryConstants kConstants{0.05, 4.5, 20, 0.06};
+const TheoryConstants kRecorded{0.05, 4.5, 20, 0.06};
 
 /// Passes events on, changed.
 class Tamper final : public InsertionRecorder {
@@ -39,18 +39,18 @@ public:
 InvariantReport run(const Plc& plc, const std::function<void(Tamper&, StagedMesh&)>& meddle = {}) {
     MeshOptions options = certified_options();
     StagedMesh staged(plc, options);
-    RunRecorder recorder(staged.mesh, kConstants, false);
+    RunRecorder recorder(staged.mesh, kRecorded, false);
     Tamper tamper;
     tamper.inner = &recorder;
     staged.boundary.recorder = &tamper;
-    staged.boundary.rules = {kConstants.delta, 0, true};
+    staged.boundary.rules = {kRecorded.delta, 0, true};
     staged.conform();
     if (meddle) meddle(tamper, staged);
     Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
     refiner.guard_edges();
     SliverRule rule;
-    rule.inside = rule.at_boundary = kConstants.sigma0;
-    rule.b = kConstants.b;
+    rule.inside = rule.at_boundary = kRecorded.sigma0;
+    rule.b = kRecorded.b;
     rule.candidates = 400;
     refiner.set_sliver_rule(rule);
     EXPECT_EQ(refiner.refine(), RunGuard::Verdict::go_on);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Large arrays on large pages. Visits at random miss the translation buffer with 4 kB pages, and the system clears a page of 2 MB faster than 512 small ones.
+// A hint: nothing depends on it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace wellmesh {
+
+/// To be called before the memory is touched.
+inline void advise_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
+#ifdef __linux__
+    constexpr std::uintptr_t kHugePage = std::uintptr_t{1} << 21;
+    const auto begin = (reinterpret_cast<std::uintptr_t>(data) + kHugePage - 1) & ~(kHugePage - 1);
+    const auto end = (reinterpret_cast<std::uintptr_t>(data) + bytes) & ~(kHugePage - 1);
+    if (begin < end) (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+#endif
+}
+
+/// Room for n elements.
+template <class T>
+void reserve_on_huge_pages(std::vector<T>& list, std::size_t n) {
+    if (n <= list.capacity()) return;
+    list.reserve(n);
+    advise_huge_pages(list.data() + list.size(), (n - list.size()) * sizeof(T));
+}
+
+}  // namespace wellmesh
