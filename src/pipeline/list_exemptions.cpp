@@ -2,8 +2,12 @@
 #include "pipeline/list_exemptions.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
 #include <utility>
 
+#include "quality/shape_lanes.hpp"
 #include "quality/tet_shape.hpp"
 
 namespace wellmesh {
@@ -25,6 +29,47 @@ std::array<std::uint32_t, 4> sorted(std::array<std::uint32_t, 4> corners) {
     return corners;
 }
 
+/// Tells of most tetrahedra that meet the bounds, several at once and without trigonometry.
+class GoodTets {
+public:
+    GoodTets(const ConformingMesh& mesh, double max_radius_edge, double min_dihedral_deg)
+        : mesh_(mesh),
+          squared_radius_edge_(max_radius_edge * max_radius_edge * (1 - kMargin)),
+          signed_squared_cosine_(signed_square(min_dihedral_deg > 0 ? std::cos(min_dihedral_deg * (std::numbers::pi / 180)) : 2) - kMargin) {}
+
+    /// Calls use(k) for those of the tetrahedra of which it can't tell.
+    template <class Use>
+    void visit_others(std::span<const TetId> tets, Use&& use) {
+        for (std::size_t first = 0; first < tets.size(); first += kShapeLanes) {
+            for (std::size_t lane = 0; lane < kShapeLanes; ++lane) {
+                const auto& c = mesh_.tets().corners(tets[std::min(first + lane, tets.size() - 1)]);
+                for (std::size_t k = 0; k < 4; ++k) {
+                    const Vec3& p = mesh_.point(c[k]);
+                    corners_.at[k][0][lane] = p.x;
+                    corners_.at[k][1][lane] = p.y;
+                    corners_.at[k][2][lane] = p.z;
+                }
+            }
+            square_shapes(corners_, shapes_);
+            for (std::size_t lane = 0; lane < std::min(kShapeLanes, tets.size() - first); ++lane)
+                if (!is_surely_good(lane)) use(first + lane);
+        }
+    }
+
+private:
+    static constexpr double kMargin = 1e-9;  // what the lanes say is off by 1e-12
+
+    static double signed_square(double x) { return x * std::abs(x); }
+    [[nodiscard]] bool is_surely_good(std::size_t lane) const {
+        return may_trust(shapes_, lane) && shapes_.six_volumes[lane] > 0 && shapes_.radius_edge[lane] < squared_radius_edge_ && shapes_.largest_cosine[lane] < signed_squared_cosine_;
+    }
+
+    const ConformingMesh& mesh_;
+    double squared_radius_edge_, signed_squared_cosine_;
+    CornerLanes corners_{};
+    SquaredShapes shapes_{};
+};
+
 }  // namespace
 
 std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
@@ -38,11 +83,12 @@ std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::ve
     constexpr std::size_t kGrain = std::size_t{1} << 13;
     std::vector<std::vector<std::size_t>> missing((order.size() + kGrain - 1) / kGrain);
     workers.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto& c = mesh.tets().corners(order[i]);
+        const std::span<const TetId> tets{order.data() + begin, end - begin};
+        GoodTets(mesh, goals.max_radius_edge_ratio, angle).visit_others(tets, [&](std::size_t i) {
+            const auto& c = mesh.tets().corners(tets[i]);
             const TetShape shape = shape_of(mesh.point(c[0]), mesh.point(c[1]), mesh.point(c[2]), mesh.point(c[3]));
-            if (!(shape.radius_edge <= goals.max_radius_edge_ratio && (angle <= 0 || shape.min_dihedral_deg >= angle))) missing[piece].push_back(i);
-        }
+            if (!(shape.radius_edge <= goals.max_radius_edge_ratio && (angle <= 0 || shape.min_dihedral_deg >= angle))) missing[piece].push_back(begin + i);
+        });
     });
     for (const std::vector<std::size_t>& piece : missing)
         for (const std::size_t i : piece) {
