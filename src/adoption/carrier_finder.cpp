@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "conforming/place_point.hpp"
 #include "core/infinity.hpp"
@@ -10,10 +11,6 @@
 #include "validation/closest_points.hpp"
 
 namespace wellmesh {
-namespace {
-
-}  // namespace
-
 CarrierFinder::CarrierFinder(const ValidPlc& plc, double tolerance) : plc_(plc), tolerance_(tolerance), reach_(tolerance) {
     double largest = 0;
     for (const Vec3& p : plc.vertices) {

@@ -2,6 +2,7 @@
 #include "certify/hull_proof.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <numeric>

@@ -13,7 +13,7 @@
 namespace wellmesh::certifying {
 namespace {
 
-constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
+constexpr double kRoundingUnit = std::numeric_limits<double>::epsilon() / 2;
 
 constexpr std::size_t after(std::size_t i) { return i == 2 ? 0 : i + 1; }
 constexpr std::size_t before(std::size_t i) { return i == 0 ? 2 : i - 1; }
@@ -23,7 +23,7 @@ constexpr std::size_t before(std::size_t i) { return i == 0 ? 2 : i - 1; }
 Sign orient2d(const Point2& a, const Point2& b, const Point2& c) {
     const double left = (a.x - c.x) * (b.y - c.y), right = (a.y - c.y) * (b.x - c.x), det = left - right;
     // [Shewchuk97]: the rounded determinant has the right sign beyond (3 + 16 u) u (|left| + |right|).
-    const double bound = (3 + 16 * kUnit) * kUnit * (std::abs(left) + std::abs(right));
+    const double bound = (3 + 16 * kRoundingUnit) * kRoundingUnit * (std::abs(left) + std::abs(right));
     // Below this, a product may have underflowed.
     if (std::abs(det) > bound && std::abs(det) > 1e-280) return det > 0 ? Sign::positive : Sign::negative;
     // The same determinant times the height of a tetrahedron over the triangle, decided exactly.
@@ -177,7 +177,7 @@ bool PlanarMesh::surely_not_delaunay(std::uint32_t t, std::size_t e) const {
         det += lift[i] * (x[j] * y[k] - x[k] * y[j]);
         size += lift[i] * (std::abs(x[j] * y[k]) + std::abs(x[k] * y[j]));
     }
-    return det > 32 * kUnit * size;  // at most 10 roundings relative to each term [Shewchuk97]
+    return det > 32 * kRoundingUnit * size;  // at most 10 roundings relative to each term [Shewchuk97]
 }
 
 void PlanarMesh::improve(std::vector<std::uint32_t>& suspects) {

@@ -9,6 +9,7 @@
 
 #include "conforming/place_point.hpp"
 #include "core/check.hpp"
+#include "core/edge_key.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 

@@ -186,7 +186,7 @@ public:
     void undo_removal(VertexId v, const Placement& where, const Snapshot& before, std::span<const TetId> filling = {});
 
     // --- zones, for several workers at once (delaunay/zones.hpp)
-    /// What each zone may have more of; for moves, which change numbers by little.
+    /// What each zone may have more of; as it stands for moves, which change numbers by little.
     struct ZoneRoom {
         std::size_t tets = 2048;
         std::size_t vertices = 0;
@@ -197,8 +197,10 @@ public:
     /// Takes over what the views changed, in their order.
     void join(std::vector<ConformingMesh>& views);
     /// Of a view: is there room to take out one vertex of a star of at most `most_tets` and put it elsewhere? If not, it has left its zone.
-    [[nodiscard]] bool has_room_to_move(std::size_t most_tets) const {
-        return tri_.has_room(2 * most_tets) && (!tri_.is_view() || free_records_.size() >= 2 * most_tets);
+    [[nodiscard]] bool has_room_to_move(std::size_t most_tets) {
+        const bool has_records = !tri_.is_view() || free_records_.size() >= 2 * most_tets;
+        if (!has_records) tri_.leave_zone();
+        return tri_.has_room(2 * most_tets) && has_records;
     }
 
     /// Of a view: is there room for a vertex, and does it break nothing? If not, it has left its zone. The whole mesh takes any. @pre cavity is the last one

@@ -16,7 +16,7 @@ public:
         : mesh_(mesh), is_welcome_(is_welcome), may_go_on_(may_go_on) {}
 
     void make_room(std::size_t) override { mesh_.fit_arrays(); }
-    /// Each zone has records of its own, as many more as are in use now.
+    /// Each zone has records of its own, all of them together as many more as are in use now, and a few.
     void split(std::size_t zones) override {
         std::vector<std::uint32_t>& free = mesh_.free_records_;
         const std::size_t share = (mesh_.records_.size() - free.size()) / zones + kSpareRecords;
@@ -57,10 +57,10 @@ public:
             }
         }
         if (dropped > 1 && deletes_subface(cavity)) return Answer::never;
-        if (is_part_ && records_.size() + dropped < cavity.boundary.size()) return Answer::not_now;
         captured_.clear();
         cell_ = mesh_.cell(cavity.tets[0]);
         if (dropped == 0) return Answer::yes;  // no surface to pass on: one cell, as that of nearly every cavity
+        if (is_part_ && records_.size() + dropped < cavity.boundary.size()) return Answer::not_now;
         mesh_.capture(cavity, captured_);
         for (const TetId t : cavity.tets) {
             std::uint32_t& r = mesh_.record_[t.index()];

@@ -8,6 +8,7 @@
 
 #include "conforming/conforming_mesh.hpp"
 #include "core/check.hpp"
+#include "core/edge_key.hpp"
 #include "core/vec3_math.hpp"
 
 namespace wellmesh {

@@ -64,10 +64,13 @@ bool ConformingMesh::may_insert(const Cavity& cavity, const Placement& where) {
     if (!tri_.is_view()) return true;
     if (tri_.left_zone()) return false;
     const std::size_t made = cavity.boundary.size();
-    bool may = !spare_vertices_.empty() && tri_.has_room(made) && free_records_.size() >= made;
+    bool may = !spare_vertices_.empty() && tri_.has_room(made);
     if (may && std::any_of(cavity.tets.begin(), cavity.tets.end(), [&](TetId t) { return has_labels(t) || cell_[t.index()] != cell_[cavity.tets[0].index()]; })) {
-        plan(cavity, where);
-        planned_ = may = !breaks_something(where);
+        may = free_records_.size() >= made;
+        if (may) {
+            plan(cavity, where);
+            planned_ = may = !breaks_something(where);
+        }
     }
     if (!may || cell_[cavity.tets[0].index()] == unknown_cell()) tri_.leave_zone();
     return !tri_.left_zone();

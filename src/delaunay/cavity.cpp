@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The conflict test and the search for the cavity of a point, without changing anything.
+#include <algorithm>
 #include <utility>
 
 #include "core/infinity.hpp"
@@ -10,7 +11,7 @@ namespace wellmesh {
 void Triangulation::ensure_marks() {
     if (mark_.size() >= tets_.slots()) return;
     mark_.reserve(tets_.capacity());  // lest they be copied again and again while the tetrahedra fill what was reserved for them
-    mark_.resize(tets_.slots() + tets_.slots() / 8 + 64, 0);
+    mark_.resize(std::min(tets_.capacity(), tets_.slots() + tets_.slots() / 8 + 64), 0);
 }
 
 void Triangulation::next_epoch() {

@@ -21,7 +21,7 @@
 namespace wellmesh::io {
 namespace {
 
-constexpr std::array<std::string_view, 33> kPassedOver{
+constexpr std::array<std::string_view, 33> kPassedOverWords{
     "vt", "vn", "vp", "p", "s", "mg", "mtllib", "maplib", "usemap", "bevel", "c_interp", "d_interp", "lod",
     "shadow_obj", "trace_obj", "ctech", "stech", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm",
     "trim", "hole", "scrv", "sp", "end", "con", "call", "csh"};
@@ -61,7 +61,7 @@ private:
         } else if (word == "o" || word == "g" || word == "usemtl") {
             names_[word == "o" ? 0U : word == "g" ? 1U : 2U] = std::string(in_.rest_of_line());
             marker_known_ = false;
-        } else if (std::find(kPassedOver.begin(), kPassedOver.end(), word) != kPassedOver.end()) {
+        } else if (std::find(kPassedOverWords.begin(), kPassedOverWords.end(), word) != kPassedOverWords.end()) {
             while (!in_.next_on_line().empty()) {}  // not skip_line(): the statement may continue on the next line
         } else {
             in_.fail_expected(word, "an OBJ statement (v, vt, vn, f, l, o, g, ...)");

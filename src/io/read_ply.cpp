@@ -207,15 +207,15 @@ private:
     }
 
     void read_vertices(const Element& element) {
-        constexpr std::size_t kNone = 3;
-        std::vector<std::size_t> axis_of(element.properties.size(), kNone);
+        constexpr std::size_t kNoAxis = 3;
+        std::vector<std::size_t> axis_of(element.properties.size(), kNoAxis);
         for (std::size_t axis = 0; axis < 3; ++axis) axis_of[*element.find(std::array{"x", "y", "z"}[axis])] = axis;
-        for (std::size_t i = 0; i < axis_of.size(); ++i) float32_ = float32_ || (axis_of[i] != kNone && element.properties[i].type == Type::float32);
+        for (std::size_t i = 0; i < axis_of.size(); ++i) float32_ = float32_ || (axis_of[i] != kNoAxis && element.properties[i].type == Type::float32);
         plc_.vertices.reserve(element.count);
         for (item_ = 0; item_ < element.count; ++item_) {
             std::array<double, 4> c{};
             for (std::size_t i = 0; i < axis_of.size(); ++i) {
-                if (axis_of[i] == kNone)
+                if (axis_of[i] == kNoAxis)
                     pass_property(element, element.properties[i]);
                 else
                     c[axis_of[i]] = read_coordinate(element, element.properties[i].type);

@@ -43,7 +43,7 @@ std::uint64_t line_of(const SourceFile& source, std::size_t offset) {
 
 /// Appends what `block` holds, as it comes: a stated size is not believed. @return whether the block is sound and holds no more than `most`
 bool inflate_block(std::string_view block, std::uint64_t most, std::string& out) {
-    constexpr std::size_t kChunk = 16384;
+    constexpr std::size_t kInflatedChunk = 16384;
     z_stream stream{};
     if (::inflateInit(&stream) != Z_OK) return false;
     std::string input(block);  // zlib's interface wants it writable
@@ -53,11 +53,11 @@ bool inflate_block(std::string_view block, std::uint64_t most, std::string& out)
     int status = Z_OK;
     while (status == Z_OK && out.size() - before <= most) {
         const std::size_t used = out.size();
-        out.resize(used + kChunk);
+        out.resize(used + kInflatedChunk);
         stream.next_out = reinterpret_cast<Bytef*>(out.data() + used);
-        stream.avail_out = static_cast<uInt>(kChunk);
+        stream.avail_out = static_cast<uInt>(kInflatedChunk);
         status = ::inflate(&stream, Z_NO_FLUSH);
-        out.resize(used + kChunk - stream.avail_out);
+        out.resize(used + kInflatedChunk - stream.avail_out);
     }
     ::inflateEnd(&stream);
     return status == Z_STREAM_END && out.size() - before <= most;

@@ -80,9 +80,9 @@ std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::ve
     const QualityGoals& goals = options.quality;
     const double angle = std::max(goals.min_dihedral_angle_deg, goals.min_dihedral_boundary_deg.value_or(0));
     // Who forces them is found by searching the mesh: not by several threads at once. It matters to few.
-    constexpr std::size_t kGrain = std::size_t{1} << 13;
-    std::vector<std::vector<std::size_t>> missing((order.size() + kGrain - 1) / kGrain);
-    workers.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+    constexpr std::size_t kTetsAPiece = std::size_t{1} << 13;
+    std::vector<std::vector<std::size_t>> missing((order.size() + kTetsAPiece - 1) / kTetsAPiece);
+    workers.for_ranges(order.size(), kTetsAPiece, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         const std::span<const TetId> tets{order.data() + begin, end - begin};
         GoodTets(mesh, goals.max_radius_edge_ratio, angle).visit_others(tets, [&](std::size_t i) {
             const auto& c = mesh.tets().corners(tets[i]);

@@ -46,9 +46,9 @@ MeshOptions with_names_resolved(const MeshOptions& options, const Plc& plc) {
 }
 
 std::uint64_t count_filled(const ConformingMesh& mesh, Workers& workers) {
-    constexpr std::size_t kGrain = std::size_t{1} << 15;
-    std::vector<std::uint64_t> counts((mesh.tets().slots() + kGrain - 1) / kGrain);
-    workers.for_ranges(mesh.tets().slots(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+    constexpr std::size_t kSlotsAPiece = std::size_t{1} << 15;
+    std::vector<std::uint64_t> counts((mesh.tets().slots() + kSlotsAPiece - 1) / kSlotsAPiece);
+    workers.for_ranges(mesh.tets().slots(), kSlotsAPiece, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         std::uint64_t n = 0;
         for (std::size_t i = begin; i < end; ++i) n += mesh.tets().is_finite(TetId{i}) && mesh.in_domain(TetId{i});
         counts[piece] = n;

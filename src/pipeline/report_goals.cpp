@@ -30,7 +30,8 @@ struct Measured {
     /// As shape_of() has it.
     [[nodiscard]] double circumradius() const {
         const double size = std::abs(volume());
-        return size == 0 ? std::numeric_limits<double>::infinity() : norm(scaled_circumcentre(b - a, c - a, d - a)) / (12 * size);
+        constexpr double kOrdinary = 1e-90;  // of volumes: below, products of lengths may underflow
+        return size > kOrdinary ? norm(scaled_circumcentre(b - a, c - a, d - a)) / (12 * size) : shape().circumradius;
     }
 };
 
@@ -38,11 +39,11 @@ struct Measured {
 /// Counts the tetrahedra for which `excess(measured)` is positive, asked from several threads, and keeps the worst few.
 template <class F>
 void count_misses(Workers& workers, const MeshResult& result, AskedAchieved& goal, F&& excess, bool of_shape, Part part = Part::all) {
-    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    constexpr std::size_t kTetsAPiece = std::size_t{1} << 14;
     using Missed = std::vector<std::pair<double, std::size_t>>;
     const TetMesh& mesh = result.mesh;
-    std::vector<Missed> found((mesh.tets.size() + kGrain - 1) / kGrain);
-    workers.for_ranges(mesh.tets.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+    std::vector<Missed> found((mesh.tets.size() + kTetsAPiece - 1) / kTetsAPiece);
+    workers.for_ranges(mesh.tets.size(), kTetsAPiece, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         auto exempt = std::lower_bound(result.exemptions.begin(), result.exemptions.end(), begin, [](const Exemption& e, std::size_t t) { return e.tet < t; });
         for (std::size_t t = begin; t < end; ++t) {
             while (exempt != result.exemptions.end() && exempt->tet < t) ++exempt;

@@ -139,8 +139,8 @@ inline AngleRange dihedral_range_deg(const std::array<Vec3, 4>& n) {
     return {*std::min_element(angles.begin(), angles.end()), *std::max_element(angles.begin(), angles.end())};
 }
 
-/// All measures at once.
-inline TetShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+/// shape_of() where products of nine lengths neither over- nor underflow.
+inline TetShape shape_of_ordinary(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const Vec3 u = b - a, v = c - a, w = d - a;
     TetShape s;
     s.volume = determinant(u, v, w) / 6;
@@ -164,6 +164,23 @@ inline TetShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3
     s.radius_edge = s.circumradius / s.shortest_edge;
     s.aspect = s.circumradius * (twice_surface / 2) / (3 * volume);  // the inradius is 3 V / surface
     s.sigma = volume / (s.shortest_edge * s.shortest_edge * s.shortest_edge);
+    return s;
+}
+
+/// All measures at once.
+inline TetShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    constexpr double kLeast = 1e-30, kMost = 1e30;
+    const Vec3 u = b - a, v = c - a, w = d - a;
+    const double size = std::max({std::abs(u.x), std::abs(u.y), std::abs(u.z), std::abs(v.x), std::abs(v.y), std::abs(v.z), std::abs(w.x), std::abs(w.y), std::abs(w.z)});
+    if ((size > kLeast && size < kMost) || !(size > 0 && size < std::numeric_limits<double>::infinity())) [[likely]]
+        return shape_of_ordinary(a, b, c, d);
+    // By a power of two: nothing is rounded, and of the measures only lengths and the volume change.
+    const int power = std::ilogb(size);
+    const double scale = std::ldexp(1.0, -power);
+    TetShape s = shape_of_ordinary(scale * a, scale * b, scale * c, scale * d);
+    s.volume = std::ldexp(s.volume, 3 * power);
+    s.shortest_edge = std::ldexp(s.shortest_edge, power);
+    s.circumradius = std::ldexp(s.circumradius, power);
     return s;
 }
 

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "conforming/edge_lookup.hpp"
+#include "core/edge_key.hpp"
 #include "core/vec3_math.hpp"
 #include "quality/tet_shape.hpp"
 #include "validation/gap_demand.hpp"

@@ -12,7 +12,7 @@
 namespace wellmesh {
 namespace {
 
-constexpr double kReach = 0.4;  // of the circumradius (half the length of a subsegment)
+constexpr double kPatternReach = 0.4;  // of the circumradius (half the length of a subsegment)
 constexpr unsigned kSamplesInside = 40, kSamplesOnFacet = 30, kSamplesOnSegment = 12;
 
 }  // namespace
@@ -21,13 +21,13 @@ constexpr unsigned kSamplesInside = 40, kSamplesOnFacet = 30, kSamplesOnSegment 
 Vec3 BestInsertion::candidate(const Placement& where, const Vec3& centre, double reach, const Vec3& unit) const {
     if (where.carrier == CarrierKind::segment) {
         const Vec3 half = 0.5 * (mesh_.point(where.b) - mesh_.point(where.a));
-        return project_to_segment(mesh_.plc(), SegmentId{where.carrier_id}, centre + (kReach * unit.x) * half);
+        return project_to_segment(mesh_.plc(), SegmentId{where.carrier_id}, centre + (kPatternReach * unit.x) * half);
     }
     if (where.carrier == CarrierKind::facet) {
         const ValidFacet& facet = mesh_.plc().facets[where.carrier_id];
-        return project_to_facet(facet, centre + (kReach * reach) * (unit.x * facet.axis_u + unit.y * facet.axis_v));
+        return project_to_facet(facet, centre + (kPatternReach * reach) * (unit.x * facet.axis_u + unit.y * facet.axis_v));
     }
-    return flush_to_exact_range(centre + (kReach * reach) * unit);
+    return flush_to_exact_range(centre + (kPatternReach * reach) * unit);
 }
 
 VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit) {

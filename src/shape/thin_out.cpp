@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::size_t kTrialsPerExcess = 30;  // of old vertices, for each vertex that is too many: on large meshes not all can be tried
 constexpr std::size_t kFirstTrials = 1000;      // that may fail before that proportion is asked of the vertices that went, too
-constexpr double kWorthRepeating = 0.02;      // of the vertices must go in a sweep for another to be tried
+constexpr double kWorthGoingOn = 0.02;      // of the vertices must go in a sweep for another to be tried
 
 }  // namespace
 
@@ -32,7 +32,7 @@ RunGuard::Verdict Thinning::run(std::size_t first_new, std::size_t enough) {
         if (verdict == RunGuard::Verdict::go_on && mesh_.vertex_count() > enough)
             verdict = sweep(mesh_.plc().vertices.size(), enough, kTrialsPerExcess * (mesh_.vertex_count() - enough));
     } while (verdict == RunGuard::Verdict::go_on && mesh_.vertex_count() > enough &&
-             static_cast<double>(before - mesh_.vertex_count()) > kWorthRepeating * static_cast<double>(before));
+             static_cast<double>(before - mesh_.vertex_count()) > kWorthGoingOn * static_cast<double>(before));
     return verdict;
 }
 

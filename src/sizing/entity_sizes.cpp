@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sizing/entity_sizes.hpp"
-#include "core/infinity.hpp"
 
 #include <algorithm>
 #include <set>
@@ -8,6 +7,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "core/infinity.hpp"
 
 namespace wellmesh {
 namespace {

@@ -10,10 +10,6 @@
 #include "wellmesh/error.hpp"
 
 namespace wellmesh {
-namespace {
-
-}  // namespace
-
 PointSizes::PointSizes(const ValidPlc& plc, const SizeGoals& goals, const std::vector<double>& vertex_sizes) : goals_(goals) {
     if (goals.per_local_feature_size) lfs_ = std::make_unique<const LocalFeatureSize>(plc);
     std::vector<Vec3> points;

@@ -13,7 +13,7 @@
 namespace wellmesh {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 
 std::string describe_edge(const Complexes& complex, const Report& report, const std::array<VertexId, 2>& ends) {
     return fmt::format("the edge from {} at {} to {} at {}", report.name_vertex(complex.input.source_vertex[ends[0].index()]), format_point(complex.point(ends[0])),
@@ -84,11 +84,11 @@ std::vector<PlacedAngle> placed_angles(const Complexes& complex) {
             smallest = std::min(smallest, std::atan2(norm(cross(a, b)), dot(a, b)));
         }
     for (std::size_t v = 0; v < at_vertex.size(); ++v)
-        if (at_vertex[v] < std::numbers::pi) found.push_back({at_vertex[v] * kDegrees, {VertexId{v}}});
+        if (at_vertex[v] < std::numbers::pi) found.push_back({at_vertex[v] * kDegreesPerRadian, {VertexId{v}}});
     for (std::size_t e = 0; e < complex.edges.keys.size(); ++e)
         if (complex.groups.is_segment[e] && complex.edges.around(e).size() > 1) {
             const auto ends = edge_ends(complex.edges.keys[e]);
-            found.push_back({smallest_between(complex, e) * kDegrees, {ends[0], ends[1]}});
+            found.push_back({smallest_between(complex, e) * kDegreesPerRadian, {ends[0], ends[1]}});
         }
     std::sort(found.begin(), found.end(), [](const PlacedAngle& a, const PlacedAngle& b) { return a.degrees != b.degrees ? a.degrees < b.degrees : a.at < b.at; });
     return found;
@@ -106,7 +106,7 @@ void find_acute_angles(const Complexes& complex, const Rounding& rounding, Repor
             continue;
         }
         const double length = distance(complex.point(angle.at[0]), complex.point(angle.at[1]));
-        if (angle.degrees >= 90 - displacement / length * kDegrees) continue;
+        if (angle.degrees >= 90 - displacement / length * kDegreesPerRadian) continue;
         report.add(DefectKind::acute_dihedral_angle, Severity::warning, {report.vertex(first), report.vertex(complex.input.source_vertex[angle.at[1].index()])},
                    fmt::format("facets meet at {:.6g} degrees along {}", angle.degrees, describe_edge(complex, report, {angle.at[0], angle.at[1]})), angle.degrees);
     }

@@ -10,6 +10,7 @@
 
 #include "core/vec3_math.hpp"
 #include "predicates/exact_range.hpp"
+#include "validation/box_tree.hpp"
 #include "validation/plane.hpp"
 
 namespace wellmesh {
@@ -34,6 +35,7 @@ public:
 private:
     void merge_vertices();
     bool is_usable(std::size_t v);
+    void require_extent(const std::vector<std::uint32_t>& usable);
     void add_facet(std::size_t f);
     bool clean_polygon(std::size_t f, const std::vector<std::uint32_t>& stated, Polygon& polygon);
     bool is_collinear(const CleanFacet& facet) const;
@@ -70,6 +72,18 @@ bool Cleaner::is_usable(std::size_t v) {
     return true;
 }
 
+/// Measures of shape are products of up to eight lengths.
+void Cleaner::require_extent(const std::vector<std::uint32_t>& usable) {
+    constexpr double kLeast = 1e-36;  // input units
+    Box box;
+    for (const std::uint32_t v : usable) box.add(plc_.vertices[v]);
+    if (box.empty()) return;
+    const double extent = std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
+    if (extent == 0 || extent >= kLeast) return;  // 0: that is another fault
+    report_.add(DefectKind::coordinate_range, Severity::error, {report_.vertex(usable.front())},
+                fmt::format("the input is only {:.3g} across; below {:.0e} shapes can't be told from each other: scale it", extent, kLeast));
+}
+
 void Cleaner::merge_vertices() {
     const std::size_t n = plc_.vertices.size();
     out_.of_input.resize(n);
@@ -77,6 +91,7 @@ void Cleaner::merge_vertices() {
     order.reserve(n);
     for (std::size_t v = 0; v < n; ++v)
         if (is_usable(v)) order.push_back(static_cast<std::uint32_t>(v));
+    require_extent(order);
     const auto less = [&](std::uint32_t a, std::uint32_t b) {  // comparisons of doubles: -0 and 0 are one
         const Vec3 &p = plc_.vertices[a], &q = plc_.vertices[b];
         return p == q ? a < b : lexicographically_less(p, q);

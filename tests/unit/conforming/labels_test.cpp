@@ -311,5 +311,44 @@ TEST_P(Labels, ReinsertionElsewhereOnTheCarrierKeepsThem) {
 
 INSTANTIATE_TEST_SUITE_P(Domains, Labels, ::testing::Combine(::testing::Range<std::size_t>(0, 5), ::testing::Values(0U, 4U), ::testing::Values(0.0, 1e3)));
 
+TEST(FindSubface, SaysTheSameWhateverIsSuggested) {
+    StagedMesh staged(all_synthetic_plcs().front().plc);
+    staged.conform();
+    ConformingMesh& mesh = staged.mesh;
+    std::vector<Subface> listed;
+    const auto list = [&] {
+        listed.clear();
+        staged.for_domain([&](TetId t) {
+            for (unsigned f = 0; f < 4; ++f)
+                if (const FacetId facet = mesh.facet_at(TetFace{t, f}); facet.valid()) listed.push_back({mesh.tets().face_corners(TetFace{t, f}), facet, t});
+        });
+    };
+    const auto check = [&] {
+        for (const Subface& s : listed) {
+            const bool is_there = mesh.find_subface({s.corners, s.facet}).valid();
+            std::vector<TetId> suggestions{s.near};
+            for (std::size_t i = 0; i < mesh.tets().slots(); ++i) suggestions.emplace_back(i);  // free ones, ghosts, and those that are others by now
+            for (const TetId t : suggestions) {
+                const TetFace found = mesh.find_subface({s.corners, s.facet, t});
+                ASSERT_EQ(found.valid(), is_there);
+                if (!is_there) continue;
+                auto got = mesh.tets().face_corners(found), wanted = s.corners;
+                std::sort(got.begin(), got.end());
+                std::sort(wanted.begin(), wanted.end());
+                EXPECT_EQ(got, wanted);
+                EXPECT_EQ(mesh.facet_at(found), s.facet);
+            }
+        }
+    };
+    list();
+    check();
+    std::size_t gone = 0;
+    for (std::size_t k = 0; k < listed.size(); k += 3) (void)staged.boundary.split(listed[k], {InsertionReason::boundary_by_size, VertexId{}});
+    staged.boundary.conform();
+    for (const Subface& s : listed) gone += !mesh.find_subface(s).valid();
+    EXPECT_GT(gone, 0U);
+    check();
+}
+
 }  // namespace
 }  // namespace wellmesh::testing

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "support/expect_result.hpp"
 #include "support/gap_plcs.hpp"
 #include "support/synthetic_plcs.hpp"
+#include "wellmesh/error.hpp"
 #include "wellmesh/generate.hpp"
 
 namespace wellmesh::testing {
@@ -34,6 +36,20 @@ TEST(GenerateOnce, TinyModelsAreMeshedLikeLargeOnes) {
             for (std::size_t v = 0; v < result.mesh.vertices.size(); ++v) ASSERT_EQ(result.mesh.vertices[v], scale * reference.mesh.vertices[v]);
         }
     }
+}
+
+TEST(GenerateOnce, DomainsTooSmallForTheirShapesToBeMeasuredAreRefused) {
+    const Plc cube = all_synthetic_plcs().front().plc;
+    for (const int power : {-122, -140, -178}) {
+        try {
+            (void)generate(transformed(cube, 0, 0, std::ldexp(1.0, power)), {});
+            ADD_FAILURE() << power;
+        } catch (const MeshError& e) {
+            EXPECT_EQ(e.code(), ErrorCode::coordinate_range);
+            EXPECT_NE(std::string(e.what()).find("across"), std::string::npos) << e.what();
+        }
+    }
+    EXPECT_TRUE(generate(transformed(cube, 0, 0, std::ldexp(1.0, -115)), {}).certificate.all.tets > 0);
 }
 
 void add(Plc& plc, const std::vector<Vec3>& points, const std::vector<std::vector<std::uint32_t>>& polygons) {

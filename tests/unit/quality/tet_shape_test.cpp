@@ -181,5 +181,24 @@ TEST(TetShape, MeasuresDoNotDependOnTheNumberingOrOnPowersOfTwo) {
     }
 }
 
+TEST(TetShape, MeasuresHoldWhereProductsOfLengthsUnderflowOrOverflow) {
+    for (std::uint64_t key = 0; key < 200; ++key) {
+        const Corners p = random_tet(key);
+        const TetShape s = shape_of(p);
+        for (const int power : {-190, -170, -150, -128, -100, 85}) {
+            Corners scaled = p;
+            for (Vec3& v : scaled) v = std::ldexp(1.0, power) * v;
+            const TetShape t = shape_of(scaled);
+            EXPECT_DOUBLE_EQ(t.radius_edge, s.radius_edge) << power;
+            EXPECT_DOUBLE_EQ(t.aspect, s.aspect) << power;
+            EXPECT_DOUBLE_EQ(t.sigma, s.sigma) << power;
+            EXPECT_DOUBLE_EQ(t.min_dihedral_deg, s.min_dihedral_deg) << power;
+            EXPECT_DOUBLE_EQ(t.circumradius, std::ldexp(s.circumradius, power));
+            EXPECT_DOUBLE_EQ(t.shortest_edge, std::ldexp(s.shortest_edge, power));
+            EXPECT_DOUBLE_EQ(t.volume, std::ldexp(s.volume, 3 * power));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace wellmesh
