@@ -167,13 +167,11 @@ inline TetShape shape_of_ordinary(const Vec3& a, const Vec3& b, const Vec3& c, c
     return s;
 }
 
-/// All measures at once.
-inline TetShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    constexpr double kLeast = 1e-30, kMost = 1e30;
+/// The same of a tetrahedron of any size.
+[[gnu::cold, gnu::noinline]] inline TetShape shape_of_scaled(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const Vec3 u = b - a, v = c - a, w = d - a;
     const double size = std::max({std::abs(u.x), std::abs(u.y), std::abs(u.z), std::abs(v.x), std::abs(v.y), std::abs(v.z), std::abs(w.x), std::abs(w.y), std::abs(w.z)});
-    if ((size > kLeast && size < kMost) || !(size > 0 && size < std::numeric_limits<double>::infinity())) [[likely]]
-        return shape_of_ordinary(a, b, c, d);
+    if (!(size > 0 && size < std::numeric_limits<double>::infinity())) return shape_of_ordinary(a, b, c, d);
     // By a power of two: nothing is rounded, and of the measures only lengths and the volume change.
     const int power = std::ilogb(size);
     const double scale = std::ldexp(1.0, -power);
@@ -182,6 +180,14 @@ inline TetShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3
     s.shortest_edge = std::ldexp(s.shortest_edge, power);
     s.circumradius = std::ldexp(s.circumradius, power);
     return s;
+}
+
+/// All measures at once.
+inline TetShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    constexpr double kLeast = 1e-30;  // of edges; coordinates of at most 1e27 don't overflow
+    const TetShape s = shape_of_ordinary(a, b, c, d);
+    if (s.shortest_edge > kLeast) [[likely]] return s;
+    return shape_of_scaled(a, b, c, d);
 }
 
 }  // namespace wellmesh
