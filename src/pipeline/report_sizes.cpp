@@ -16,7 +16,7 @@
 namespace wellmesh {
 namespace {
 
-constexpr std::size_t kWorstEdgesListed = 8;
+constexpr std::size_t kWorstInARegion = 8;
 /// Splitting for size makes no edge below this part of the length asked for: (1 - delta) of the circumradius bound, half of that on what a centre encroaches
 /// (as in Refiner::guard_edges).
 constexpr double kShortestPerLength = (1 - kPracticalDelta) / 2 * kCircumradiusPerEdgeLength;
@@ -136,7 +136,7 @@ private:
 
     void list_worst(std::vector<std::pair<double, std::size_t>>& missed, AskedAchieved& row) const {
         std::sort(missed.begin(), missed.end(), [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
-        for (std::size_t i = 0; i < std::min(kWorstEdgesListed, missed.size()); ++i) {
+        for (std::size_t i = 0; i < std::min(kWorstInARegion, missed.size()); ++i) {
             Vec3 centre;
             for (const std::uint32_t v : mesh_.tets[missed[i].second]) centre = centre + 0.25 * mesh_.vertices[v];
             row.worst.push_back({EntityKind::tetrahedron, missed[i].second + 1, centre});

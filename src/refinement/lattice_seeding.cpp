@@ -233,9 +233,9 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
         const std::size_t step = std::max<std::size_t>(1, waiting.size() / (kSampleAZone * count));
         for (std::size_t k = 0; k < waiting.size(); k += step) sample.push_back(mesh_.point(mesh_.tets().corner(waiting[k], 0)));
         const std::size_t vertices = work / count + kMoreVertices;
+        const ConformingMesh::ZoneRoom room{.tets = kTetsPerVertex * vertices, .vertices = vertices, .records = kTetsPerVertex * vertices};
         ZoneViews parts;
-        std::vector<ConformingMesh> views =
-            mesh_.split(workers_, Zones(std::move(sample), count, turn), {.tets = kTetsPerVertex * vertices, .vertices = vertices, .records = kTetsPerVertex * vertices}, parts);
+        std::vector<ConformingMesh> views = mesh_.split(workers_, Zones(std::move(sample), count, turn), room, parts);
         std::vector<std::vector<TetId>> shares(count);
         for (const TetId t : waiting)
             if (const std::uint8_t zone = parts.zone_of_tet[t.index()]; zone != ZoneViews::kNone) shares[zone].push_back(t);
