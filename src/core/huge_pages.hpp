@@ -11,6 +11,8 @@
 #include <sys/mman.h>
 #endif
 
+#include "core/workers.hpp"
+
 namespace wellmesh {
 
 /// To be called before the memory is touched.
@@ -29,6 +31,27 @@ void reserve_on_huge_pages(std::vector<T>& list, std::size_t n) {
     if (n <= list.capacity()) return;
     list.reserve(n);
     advise_huge_pages(list.data() + list.size(), (n - list.size()) * sizeof(T));
+}
+
+/// The same; the system clears the room's pages on all workers, not on the one that writes to them first.
+template <class T>
+void reserve_on_huge_pages(std::vector<T>& list, std::size_t n, Workers& workers) {
+    reserve_on_huge_pages(list, n);
+    if (workers.threads() == 1 || n <= list.size()) return;
+    constexpr std::size_t kPage = 4096, kPiece = std::size_t{1} << 21;
+    auto* const room = reinterpret_cast<unsigned char*>(list.data() + list.size());
+    workers.for_ranges((n - list.size()) * sizeof(T), kPiece, [room](std::size_t begin, std::size_t end, std::size_t) {
+        for (; begin < end; begin += kPage) static_cast<volatile unsigned char*>(room)[begin] = 0;
+    });
+}
+
+/// n elements, made new.
+template <class T>
+std::vector<T> make_on_huge_pages(std::size_t n, Workers& workers) {
+    std::vector<T> list;
+    reserve_on_huge_pages(list, n, workers);
+    list.resize(n);
+    return list;
 }
 
 }  // namespace wellmesh

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/huge_pages.hpp"
 #include "core/resident_memory.hpp"
@@ -66,21 +67,37 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, Workers& workers, I
             else std::atomic_ref(n).store(0, std::memory_order_relaxed);
         }
     });
-    std::vector<VertexId> order, steiner;
-    std::vector<Vec3> steiner_points;
-    for (auto* list : {&order, &steiner}) list->reserve(number.size());
-    steiner_points.reserve(number.size());
-    for (std::size_t i = 0; i < number.size(); ++i) {
-        const VertexId v{i};
-        if (number[i] == kUnused) continue;
-        if (mesh.info(v).carrier == CarrierKind::input_vertex) {
-            order.push_back(v);
-        } else {
-            steiner.push_back(v);
-            steiner_points.push_back(mesh.point(v));
-        }
-    }
-    for (const std::uint32_t i : spatial_order(steiner_points, workers)) order.push_back(steiner[i]);
+    // Input vertices in front; where each piece's begin is known once all are counted.
+    struct Counts {
+        std::size_t input = 0, steiner = 0;
+    };
+    const auto for_used = [&](std::size_t begin, std::size_t end, auto&& use) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (number[i] != kUnused) use(VertexId{i}, mesh.info(VertexId{i}).carrier == CarrierKind::input_vertex);
+    };
+    std::vector<Counts> before((number.size() + kGrain - 1) / kGrain);
+    workers.for_ranges(number.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for_used(begin, end, [&](VertexId, bool is_input) { ++(is_input ? before[piece].input : before[piece].steiner); });
+    });
+    Counts all;
+    for (Counts& c : before) c = {std::exchange(all.input, all.input + c.input), std::exchange(all.steiner, all.steiner + c.steiner)};
+    std::vector<VertexId> order(all.input + all.steiner), steiner(all.steiner);
+    std::vector<Vec3> steiner_points(all.steiner);
+    workers.for_ranges(number.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        Counts next = before[piece];
+        for_used(begin, end, [&](VertexId v, bool is_input) {
+            if (is_input) {
+                order[next.input++] = v;
+            } else {
+                steiner[next.steiner] = v;
+                steiner_points[next.steiner++] = mesh.point(v);
+            }
+        });
+    });
+    const std::vector<std::uint32_t> along_curve = spatial_order(steiner_points, workers);
+    workers.for_ranges(all.steiner, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) order[all.input + i] = steiner[along_curve[i]];
+    });
     out.vertices.resize(order.size());
     out.vertex_carriers.resize(order.size());
     if (!plc.vertex_markers.empty()) out.vertex_markers.assign(order.size(), 0);
@@ -108,7 +125,7 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, Workers& workers, I
     std::vector<std::uint32_t> first(order.size() + 1, 0);
     for_output([&](TetId t) { add_one(first[lowest(t) + 1]); });
     for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-    std::vector<TetId> listed(first.back());
+    auto listed = make_on_huge_pages<TetId>(first.back(), workers);
     for_output([&](TetId t) { listed[add_one(first[lowest(t)])] = t; });
     // Each start has moved on to the next one's. Several threads dealt those of a vertex out as it happened.
     if (!alone)
@@ -130,8 +147,8 @@ TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order, Work
     order = number_output(mesh, workers, in_output, number, out);
     return_freed_memory();
     const std::size_t count = order.size();
-    reserve_on_huge_pages(out.tets, count);
-    reserve_on_huge_pages(out.tet_regions, count);
+    reserve_on_huge_pages(out.tets, count, workers);
+    reserve_on_huge_pages(out.tet_regions, count, workers);
     out.tets.resize(count);
     out.tet_regions.resize(count);
     struct Listed {

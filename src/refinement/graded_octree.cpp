@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/huge_pages.hpp"
 
 namespace wellmesh {
 
@@ -73,44 +76,61 @@ void GradedOctree::balance() {
     }
 }
 
-std::vector<LatticePoint> GradedOctree::lattice() const {
+std::vector<LatticePoint> GradedOctree::lattice(Workers& workers) const {
     // Corners as cells of the grid of the greatest depth, so that those of different leaves are told to be the same exactly.
     constexpr unsigned kBits = kMaxDepth + 1;
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
     static_assert(3 * kBits <= 64);
     struct Corner {
         std::uint64_t at = 0;  // three coordinates, the first one in front
         std::uint32_t depth = 0;
     };
-    const auto leaves = static_cast<std::size_t>(std::count_if(nodes_.begin(), nodes_.end(), [](const Node& n) { return n.first_child == 0 && n.used; }));
-    std::vector<Corner> corners;
-    std::vector<LatticePoint> points;
-    corners.reserve(leaves + leaves / 4);
-    points.reserve(2 * leaves + leaves / 4);
-    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
-        const Node& n = nodes_[i];
-        if (n.first_child != 0 || !n.used) continue;
-        const Box b = box(i);
-        points.push_back({{b.lo.x + b.side / 2, b.lo.y + b.side / 2, b.lo.z + b.side / 2}, b.side});
-        const unsigned shift = kMaxDepth - n.depth;
-        for (std::uint32_t k = 0; k < 8; ++k) {
-            const std::array<std::uint32_t, 3> at{n.at[0] + (k & 1U), n.at[1] + ((k >> 1) & 1U), n.at[2] + (k >> 2)};
-            // It is the first corner of the leaf beyond, if that is one of the same size: so most corners are listed once.
-            if (k > 0 && std::max({at[0], at[1], at[2]}) < (1U << n.depth)) {
-                const Node& beyond = nodes_[find(n.depth, at)];
-                if (beyond.used && beyond.first_child == 0 && beyond.depth == n.depth) continue;
+    struct Piece {
+        std::vector<LatticePoint> centres;
+        std::vector<Corner> corners;
+        std::size_t first_centre = 0, first_corner = 0;
+    };
+    std::vector<Piece> pieces((nodes_.size() + kGrain - 1) / kGrain);
+    workers.for_ranges(nodes_.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t which) {
+        Piece& piece = pieces[which];
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+            const Node& n = nodes_[i];
+            if (n.first_child != 0 || !n.used) continue;
+            const Box b = box(i);
+            piece.centres.push_back({{b.lo.x + b.side / 2, b.lo.y + b.side / 2, b.lo.z + b.side / 2}, b.side});
+            const unsigned shift = kMaxDepth - n.depth;
+            for (std::uint32_t k = 0; k < 8; ++k) {
+                const std::array<std::uint32_t, 3> at{n.at[0] + (k & 1U), n.at[1] + ((k >> 1) & 1U), n.at[2] + (k >> 2)};
+                // It is the first corner of the leaf beyond, if that is one of the same size: so most corners are listed once.
+                if (k > 0 && std::max({at[0], at[1], at[2]}) < (1U << n.depth)) {
+                    const Node& beyond = nodes_[find(n.depth, at)];
+                    if (beyond.used && beyond.first_child == 0 && beyond.depth == n.depth) continue;
+                }
+                piece.corners.push_back({std::uint64_t{at[0] << shift} << (2 * kBits) | std::uint64_t{at[1] << shift} << kBits | at[2] << shift, n.depth});
             }
-            corners.push_back({std::uint64_t{at[0] << shift} << (2 * kBits) | std::uint64_t{at[1] << shift} << kBits | at[2] << shift, n.depth});
         }
+    });
+    std::size_t leaves = 0, listed = 0;
+    for (Piece& p : pieces) {
+        p.first_centre = std::exchange(leaves, leaves + p.centres.size());
+        p.first_corner = std::exchange(listed, listed + p.corners.size());
     }
+    std::vector<Corner> corners(listed);
+    workers.for_each(pieces.size(), [&](std::size_t p) { std::copy(pieces[p].corners.begin(), pieces[p].corners.end(), corners.data() + pieces[p].first_corner); });
     std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at != b.at ? a.at < b.at : a.depth > b.depth; });
+    corners.erase(std::unique(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at == b.at; }), corners.end());
+    auto points = make_on_huge_pages<LatticePoint>(leaves + corners.size(), workers);
+    workers.for_each(pieces.size(), [&](std::size_t p) { std::copy(pieces[p].centres.begin(), pieces[p].centres.end(), points.data() + pieces[p].first_centre); });
     const double unit = std::ldexp(side_, -static_cast<int>(kMaxDepth));
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const std::uint64_t at = corners[i].at;
-        if (i > 0 && at == corners[i - 1].at) continue;
+    workers.for_ranges(corners.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
         const auto along = [&](double lo, std::uint64_t cells) { return lo + static_cast<double>(cells & kMask) * unit; };
-        points.push_back({{along(lo_.x, at >> (2 * kBits)), along(lo_.y, at >> kBits), along(lo_.z, at)}, std::ldexp(side_, -static_cast<int>(corners[i].depth))});
-    }
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint64_t at = corners[i].at;
+            points[leaves + i] = {{along(lo_.x, at >> (2 * kBits)), along(lo_.y, at >> kBits), along(lo_.z, at)},
+                                  std::ldexp(side_, -static_cast<int>(corners[i].depth))};
+        }
+    });
     return points;
 }
 

@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/workers.hpp"
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
@@ -43,7 +44,7 @@ public:
     /// Splits leaves until those that share a corner with a used one differ from it by at most one level.
     void balance();
     /// Corners and centres of the used leaves, each once, in an order that depends on the tree alone.
-    [[nodiscard]] std::vector<LatticePoint> lattice() const;
+    [[nodiscard]] std::vector<LatticePoint> lattice(Workers& workers) const;
 
 private:
     struct Node {

@@ -6,12 +6,12 @@
 #include <thread>
 
 #include "conforming/place_point.hpp"
+#include "core/huge_pages.hpp"
 #include "core/infinity.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/spatial_order.hpp"
 #include "refinement/lattice_seeding.hpp"
-#include "validation/box_tree.hpp"
 
 namespace wellmesh {
 namespace {
@@ -39,12 +39,14 @@ double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
 }  // namespace
 
 std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<LatticePoint>& lattice) {
-    std::vector<Vec3> points;
-    points.reserve(lattice.size());
-    for (const LatticePoint& p : lattice) points.push_back(p.point);
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    auto points = make_on_huge_pages<Vec3>(lattice.size(), workers_);
+    workers_.for_ranges(lattice.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t k = begin; k < end; ++k) points[k] = lattice[k].point;
+    });
     const std::vector<std::uint32_t> order = biased_spatial_order(points, workers_);
-    std::vector<Seed> seeds(order.size());
-    workers_.for_ranges(order.size(), 1 << 14, [&](std::size_t begin, std::size_t end, std::size_t) {
+    auto seeds = make_on_huge_pages<Seed>(order.size(), workers_);
+    workers_.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t k = begin; k < end; ++k) {
             const LatticePoint& p = lattice[order[k]];
             seeds[k] = {flush_to_exact_range(p.point + (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1)),
@@ -75,44 +77,90 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
     return true;
 }
 
+/// What seeds keep away from.
+struct LatticeSeeder::Boundary {
+    std::vector<Face> faces;
+    std::vector<Box> boxes;  ///< of the faces, then vertices
+    BoxTree tree;
+    double widest = 0;  ///< no seed keeps farther away; infinite where that is not known beforehand
+};
+
 /// Which seeds are in a cell that wants them, clear of the boundary, and in no ball about an acute vertex: balls give way one by one. Those that are
 /// not clear wait no longer.
 std::vector<char> LatticeSeeder::find_clear(std::span<Seed> seeds) {
-    const std::vector<Face> faces = list_faces();
-    std::vector<Box> boxes;
-    boxes.reserve(faces.size());
-    for (const Face& f : faces) boxes.push_back({f.box[0], f.box[1]});
+    // Neighbours along the curve are looked at together: most of them are far from the boundary, all at once.
+    constexpr std::size_t kBlock = 32, kBlocks = 32;
+    std::vector<Face> faces = list_faces();
+    std::vector<Box> boxes = boxes_of(faces);
     for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v)  // those of facets lie in them
         if (mesh_.info(VertexId{v}).carrier == CarrierKind::segment || mesh_.info(VertexId{v}).carrier == CarrierKind::input_vertex)
             boxes.push_back({mesh_.point(VertexId{v}), mesh_.point(VertexId{v})});
-    const BoxTree tree(boxes);
+    BoxTree tree(boxes, workers_);
+    Boundary boundary{std::move(faces), std::move(boxes), std::move(tree)};
+    for (const double radius : radius_) boundary.widest = std::max(boundary.widest, sizes_.varies() ? kInfinity : radius < kInfinity ? kClearance * radius : 0);
     const std::vector<Box> balls = boundary_.acute().boxes_of_balls();
-    const BoxTree ball_tree(balls);
-    const Triangulation& tri = mesh_.triangulation();
+    const BoxTree ball_tree(balls, workers_);
     std::vector<char> is_clear(seeds.size(), 0);
-    workers_.for_ranges(seeds.size(), 1 << 10, [&](std::size_t begin, std::size_t end, std::size_t) {
+    workers_.for_ranges(seeds.size(), kBlock * kBlocks, [&](std::size_t begin, std::size_t end, std::size_t) {
         TetId near{};
-        for (std::size_t k = begin; k < end; ++k) {
-            if (!seeds[k].waits) continue;
-            const Vec3& p = seeds[k].point;
-            near = tri.locate(p, near);
-            const bool inside = mesh_.tets().is_finite(near) && mesh_.in_domain(near);
-            const double radius = inside ? radius_at(p, mesh_.cell(near)) : kInfinity;
-            seeds[k].waits = radius < kInfinity;
-            if (!seeds[k].waits) continue;
-            const double reach = kClearance * radius;
-            tree.query([&](const Box& b) { return seeds[k].waits && b.distance_to(p) < reach; },
-                       [&](std::uint32_t i) {
-                           if (i >= faces.size() ||
-                               squared_distance_to_triangle(p, faces[i].corners[0], faces[i].corners[1], faces[i].corners[2]) < reach * reach)
-                               seeds[k].waits = false;
-                       });
-            bool in_ball = false;
-            ball_tree.query([&](const Box& b) { return !in_ball && b.distance_to(p) <= 0; }, [&](std::uint32_t) { in_ball = true; });
-            is_clear[k] = seeds[k].waits && !in_ball;
+        std::vector<std::uint32_t> candidates;
+        for (; begin < end; begin += kBlock) {
+            const std::span<Seed> block = seeds.subspan(begin, std::min(kBlock, end - begin));
+            find_clear_of(boundary, block, near, candidates);
+            for (std::size_t k = 0; k < block.size(); ++k) {
+                bool in_ball = false;
+                if (block[k].waits)
+                    ball_tree.query([&](const Box& b) { return !in_ball && b.squared_distance_to(block[k].point) <= 0; }, [&](std::uint32_t) { in_ball = true; });
+                is_clear[begin + k] = block[k].waits && !in_ball;
+            }
         }
     });
     return is_clear;
+}
+
+/// Those that are not, or in no cell that wants them, wait no longer.
+void LatticeSeeder::find_clear_of(const Boundary& boundary, std::span<Seed> block, TetId& near, std::vector<std::uint32_t>& candidates) const {
+    Box around;
+    for (const Seed& s : block)
+        if (s.waits) around.add(s.point);
+    if (around.empty()) return;
+    const auto radius_of = [&](const Vec3& p) {
+        near = mesh_.triangulation().locate(p, near);
+        return mesh_.tets().is_finite(near) && mesh_.in_domain(near) ? radius_at(p, mesh_.cell(near)) : kInfinity;
+    };
+    const auto list_candidates = [&](double reach) {
+        candidates.clear();
+        const Box reached = around.grown(reach * (1 + 1e-9));  // rounded up
+        boundary.tree.query([&](const Box& b) { return b.meets(reached); }, [&](std::uint32_t i) { candidates.push_back(i); });
+    };
+    if (boundary.widest < kInfinity) {
+        list_candidates(boundary.widest);
+        if (candidates.empty()) {  // no face between them: all are in the same cell, or in cells that want none
+            const bool wanted = radius_of(around.low) < kInfinity;
+            for (Seed& s : block) s.waits = s.waits && wanted;
+            return;
+        }
+    }
+    std::vector<double> reach(block.size(), 0);
+    for (std::size_t k = 0; k < block.size(); ++k) {
+        if (!block[k].waits) continue;
+        const double radius = radius_of(block[k].point);
+        block[k].waits = radius < kInfinity;
+        if (block[k].waits) reach[k] = kClearance * radius;
+    }
+    if (boundary.widest == kInfinity) list_candidates(*std::max_element(reach.begin(), reach.end()));
+    for (std::size_t k = 0; k < block.size(); ++k) {
+        Seed& s = block[k];
+        for (const std::uint32_t i : candidates) {
+            if (!s.waits) break;
+            if (!(boundary.boxes[i].squared_distance_to(s.point) < reach[k] * reach[k])) continue;
+            if (i < boundary.faces.size()) {
+                const auto& [a, b, c] = boundary.faces[i].corners;
+                if (!(squared_distance_to_triangle(s.point, mesh_.point(a), mesh_.point(b), mesh_.point(c)) < reach[k] * reach[k])) continue;
+            }
+            s.waits = false;
+        }
+    }
 }
 
 bool LatticeSeeder::insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which) {

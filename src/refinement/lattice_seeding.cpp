@@ -303,10 +303,7 @@ std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
             const Vec3 &a = mesh_.point(fc[0]), &b = mesh_.point(fc[1]), &c = mesh_.point(fc[2]);
             const double spacing = spacing_at((1.0 / 3) * (a + b + c), mesh_.cell(t));
             if (spacing == kInfinity) continue;
-            out.push_back({{a, b, c},
-                           {Vec3{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
-                            Vec3{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}},
-                           spacing});
+            out.push_back({fc, spacing});
         }
     };
     const std::size_t slots = tets.slots();
@@ -317,6 +314,15 @@ std::vector<LatticeSeeder::Face> LatticeSeeder::list_faces() const {
     std::vector<Face> out;
     for (const std::vector<Face>& piece : found) out.insert(out.end(), piece.begin(), piece.end());
     return out;
+}
+
+std::vector<Box> LatticeSeeder::boxes_of(const std::vector<Face>& faces) const {
+    std::vector<Box> boxes(faces.size());
+    workers_.for_ranges(faces.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f)
+            for (const VertexId v : faces[f].corners) boxes[f].add(mesh_.point(v));
+    });
+    return boxes;
 }
 
 /// Splits until leaves are no larger than the lattice constants of the cells that they meet.
@@ -330,7 +336,7 @@ void LatticeSeeder::build(GradedOctree& tree, std::uint32_t node, const std::vec
     std::vector<std::uint32_t> here;
     double spacing = kInfinity;
     for (const std::uint32_t f : faces) {
-        const auto& [low, high] = faces_[f].box;
+        const auto& [low, high] = face_boxes_[f];
         if (low.x > hi.x || low.y > hi.y || low.z > hi.z || high.x < box.lo.x || high.y < box.lo.y || high.z < box.lo.z) continue;
         here.push_back(f);
         spacing = std::min(spacing, faces_[f].spacing);
@@ -415,12 +421,13 @@ std::vector<LatticePoint> LatticeSeeder::find_lattice(double base) {
     while (side < extent) side *= 2;
     GradedOctree tree(0.5 * (lo + hi) - 0.5 * Vec3{side, side, side}, side);
     faces_ = list_faces();
+    face_boxes_ = boxes_of(faces_);
     std::vector<std::uint32_t> all(faces_.size());
     std::iota(all.begin(), all.end(), 0U);
     build(tree, 0, all, TetId{});
     if (stopped_) return {};
     tree.balance();
-    return tree.lattice();
+    return tree.lattice(workers_);
 }
 
 }  // namespace wellmesh

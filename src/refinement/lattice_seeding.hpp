@@ -4,6 +4,7 @@
 // the layer between lattice and boundary is left to refine. The theorems of refinement hold for any almost good mesh to start from.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -16,6 +17,7 @@
 #include "core/workers.hpp"
 #include "refinement/graded_octree.hpp"
 #include "sizing/size_field.hpp"
+#include "validation/box_tree.hpp"
 
 namespace wellmesh {
 
@@ -39,10 +41,10 @@ private:
     /// For a view of a zone: splits its boundary.
     LatticeSeeder(ConformingMesh& view, BoundaryRefiner& boundary, const LatticeSeeder& whole);
 
+    /// A subface beside a cell that is to be seeded.
     struct Face {
-        std::array<Vec3, 3> corners{};
-        std::array<Vec3, 2> box{};
-        double spacing = 0;  ///< the smaller one of the cells at its sides, at its middle
+        std::array<VertexId, 3> corners{};
+        double spacing = 0;  ///< of that cell, at its middle
     };
 
     enum class Outcome : std::uint8_t { inserted, encroaches, refused };
@@ -67,6 +69,8 @@ private:
     [[nodiscard]] std::vector<Seed> seeds_of(const std::vector<LatticePoint>& lattice);
     bool insert_seeds(std::span<Seed> seeds);
     [[nodiscard]] std::vector<char> find_clear(std::span<Seed> seeds);
+    struct Boundary;
+    void find_clear_of(const Boundary& boundary, std::span<Seed> block, TetId& near, std::vector<std::uint32_t>& candidates) const;
     bool insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which);
     Outcome insert(const Vec3& p, TetId& near, VertexId known = {});
     [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;
@@ -75,6 +79,7 @@ private:
     [[nodiscard]] double most_used_spacing() const;
     void build(GradedOctree& tree, std::uint32_t node, const std::vector<std::uint32_t>& faces, TetId near);
     [[nodiscard]] std::vector<Face> list_faces() const;
+    [[nodiscard]] std::vector<Box> boxes_of(const std::vector<Face>& faces) const;
     [[nodiscard]] bool is_clear(const Vec3& p, double distance) const;
 
     ConformingMesh& mesh_;
@@ -87,6 +92,7 @@ private:
     std::vector<double> spacing_;  // by cell: lattice constant of that
     std::vector<char> is_thin_;    // by cell: nothing is done in it
     std::vector<Face> faces_;
+    std::vector<Box> face_boxes_;
     bool stopped_ = false;
     Cavity cavity_;
     std::vector<Subsegment> encroached_segments_;

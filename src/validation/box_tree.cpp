@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "validation/box_tree.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <vector>
 
 #include "core/vec3_math.hpp"
 
@@ -16,37 +18,99 @@ SegmentClipper::SegmentClipper(const Vec3& p, const Vec3& q) : start_(p), along_
     pad_ = 1e-12 * norm(along_) + 16 * std::numeric_limits<double>::epsilon() * largest;
 }
 
-BoxTree::BoxTree(std::span<const Box> boxes) : boxes_(boxes), order_(boxes.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    for (const Box& b : boxes) bounds_.add(b);
-    if (!order_.empty()) {
-        nodes_.reserve(order_.size());
-        build(0, static_cast<std::uint32_t>(order_.size()));
+/// Halves boxes by their centres, along the longest side of the centres' own box, down to a few.
+class BoxTree::Builder {
+public:
+    explicit Builder(BoxTree& tree) : tree_(tree), items_(tree.boxes_.size()) {
+        for (std::uint32_t i = 0; i < items_.size(); ++i) items_[i] = {tree.boxes_[i].low + tree.boxes_[i].high, i};
+        tree_.nodes_.resize(count_nodes(items_.size())[0]);
     }
+
+    void run(Workers& workers) {
+        // The first few halvings level by level, then what is below on its own.
+        constexpr std::size_t kParts = 16, kWorthIt = 4096;
+        std::vector<Part> upper, level{{0, 0, static_cast<std::uint32_t>(items_.size())}};
+        while (workers.threads() > 1 && level.size() < kParts && items_.size() >= kWorthIt) {
+            workers.for_each(level.size(), [&](std::size_t i) { halve(level[i]); });
+            std::vector<Part> next;
+            for (const Part& p : level) {
+                const auto [left, right] = halves(p);
+                next.insert(next.end(), {left, right});
+            }
+            upper.insert(upper.end(), level.begin(), level.end());
+            level = std::move(next);
+        }
+        workers.for_each(level.size(), [&](std::size_t i) { build(level[i]); });
+        for (std::size_t i = upper.size(); i-- > 0;) join_halves(upper[i]);
+        tree_.order_.resize(items_.size());
+        for (std::size_t i = 0; i < items_.size(); ++i) tree_.order_[i] = items_[i].box;
+    }
+
+private:
+    static constexpr std::uint32_t kLeafSize = 4;
+    struct Item {
+        Vec3 centre{};  ///< twice
+        std::uint32_t box = 0;
+    };
+    struct Part {
+        std::uint32_t node, begin, end;
+        [[nodiscard]] std::uint32_t middle() const { return begin + (end - begin) / 2; }
+    };
+
+    /// Of a tree of n boxes, and of one of n + 1.
+    static std::array<std::uint32_t, 2> count_nodes(std::size_t n) {
+        const auto inner = [](std::uint32_t left, std::uint32_t right) { return 1 + left + right; };
+        if (n < kLeafSize) return {1, 1};
+        const auto [less, more] = count_nodes(n / 2);
+        const std::uint32_t uneven = inner(less, more);
+        const std::uint32_t own = n == kLeafSize ? 1 : n % 2 == 0 ? inner(less, less) : uneven;
+        return {own, n % 2 == 0 ? uneven : inner(more, more)};
+    }
+    static std::array<Part, 2> halves(const Part& p) {
+        const Part left{p.node + 1, p.begin, p.middle()};
+        return {left, Part{left.node + count_nodes(left.end - left.begin)[0], p.middle(), p.end}};
+    }
+
+    void halve(const Part& p) {
+        Box centres;
+        for (std::uint32_t i = p.begin; i < p.end; ++i) centres.add(items_[i].centre);
+        const std::size_t axis = centres.longest_axis();
+        std::nth_element(items_.begin() + p.begin, items_.begin() + p.middle(), items_.begin() + p.end, [axis](const Item& a, const Item& b) {
+            const double ca = coordinate(a.centre, axis), cb = coordinate(b.centre, axis);
+            return ca != cb ? ca < cb : a.box < b.box;
+        });
+    }
+    void build(const Part& p) {
+        if (p.end - p.begin <= kLeafSize) {
+            Box box;
+            for (std::uint32_t i = p.begin; i < p.end; ++i) box.add(tree_.boxes_[items_[i].box]);
+            tree_.nodes_[p.node] = {box, p.begin, p.end, 0, 0};
+            return;
+        }
+        halve(p);
+        for (const Part& half : halves(p)) build(half);
+        join_halves(p);
+    }
+    void join_halves(const Part& p) {
+        const auto [left, right] = halves(p);
+        Box box = tree_.nodes_[left.node].box;
+        box.add(tree_.nodes_[right.node].box);
+        tree_.nodes_[p.node] = {box, p.begin, p.end, left.node, right.node};
+    }
+
+    BoxTree& tree_;
+    std::vector<Item> items_;
+};
+
+BoxTree::BoxTree(std::span<const Box> boxes, Workers& workers) : boxes_(boxes) {
+    if (boxes.empty()) return;
+    Builder(*this).run(workers);
+    bounds_ = nodes_[0].box;
 }
 
-std::uint32_t BoxTree::build(std::uint32_t begin, std::uint32_t end) {
-    constexpr std::uint32_t kLeafSize = 4;
-    const auto id = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({});
-    Box box;
-    for (std::uint32_t i = begin; i < end; ++i) box.add(boxes_[order_[i]]);
-    nodes_[id].box = box;
-    nodes_[id].begin = begin;
-    nodes_[id].end = end;
-    if (end - begin <= kLeafSize) return id;
-    const std::size_t axis = box.longest_axis();
-    const auto centre = [&](std::uint32_t i) { return coordinate(boxes_[i].low, axis) + coordinate(boxes_[i].high, axis); };
-    const std::uint32_t middle = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](std::uint32_t a, std::uint32_t b) {
-        const double ca = centre(a), cb = centre(b);
-        return ca != cb ? ca < cb : a < b;
-    });
-    const std::uint32_t left = build(begin, middle);
-    const std::uint32_t right = build(middle, end);
-    nodes_[id].left = left;
-    nodes_[id].right = right;
-    return id;
+BoxTree::BoxTree(std::span<const Box> boxes) : boxes_(boxes) {
+    Workers alone;
+    *this = BoxTree(boxes, alone);
 }
 
 }  // namespace wellmesh

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/vec3_math.hpp"
+#include "core/workers.hpp"
 #include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
@@ -37,10 +39,11 @@ struct Box {
         const Vec3 extent = high - low;
         return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     }
-    [[nodiscard]] double distance_to(const Vec3& p) const {
+    [[nodiscard]] double squared_distance_to(const Vec3& p) const {
         const auto outside = [](double v, double from, double to) { return v < from ? from - v : v > to ? v - to : 0.0; };
-        return norm({outside(p.x, low.x, high.x), outside(p.y, low.y, high.y), outside(p.z, low.z, high.z)});
+        return squared_norm({outside(p.x, low.x, high.x), outside(p.y, low.y, high.y), outside(p.z, low.z, high.z)});
     }
+    [[nodiscard]] double distance_to(const Vec3& p) const { return std::sqrt(squared_distance_to(p)); }
     [[nodiscard]] Box grown(double by) const { return {{low.x - by, low.y - by, low.z - by}, {high.x + by, high.y + by, high.z + by}}; }
     [[nodiscard]] bool meets(const Box& b) const {
         return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y && low.z <= b.high.z && b.low.z <= high.z;
@@ -71,7 +74,10 @@ private:
 
 class BoxTree {
 public:
+    /// @param boxes  must outlive this; fewer than 2^32
     explicit BoxTree(std::span<const Box> boxes);
+    /// The same tree, made on several threads.
+    BoxTree(std::span<const Box> boxes, Workers& workers);
 
     [[nodiscard]] const Box& bounds() const { return bounds_; }
 
@@ -79,14 +85,14 @@ public:
     template <class Meets, class Visit>
     void query(Meets&& meets, Visit&& visit) const {
         if (order_.empty()) return;
-        std::vector<std::uint32_t> stack{0};
-        while (!stack.empty()) {
-            const Node& node = nodes_[stack.back()];
-            stack.pop_back();
+        std::array<std::uint32_t, kMaxDepth + 1> stack{};  // one a level besides the node at hand
+        std::size_t waiting = 1;
+        while (waiting > 0) {
+            const Node& node = nodes_[stack[--waiting]];
             if (!meets(node.box)) continue;
             if (node.left != 0) {
-                stack.push_back(node.right);
-                stack.push_back(node.left);
+                stack[waiting++] = node.right;
+                stack[waiting++] = node.left;
                 continue;
             }
             for (std::uint32_t i = node.begin; i < node.end; ++i)
@@ -95,12 +101,13 @@ public:
     }
 
 private:
+    static constexpr std::size_t kMaxDepth = 32;  // halves of halves of 2^32
     struct Node {
         Box box;
         std::uint32_t begin = 0, end = 0;   ///< into order_
         std::uint32_t left = 0, right = 0;  ///< 0: leaf
     };
-    std::uint32_t build(std::uint32_t begin, std::uint32_t end);
+    class Builder;
 
     std::span<const Box> boxes_;
     std::vector<std::uint32_t> order_;

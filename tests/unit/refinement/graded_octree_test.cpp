@@ -18,6 +18,11 @@ void split_all(GradedOctree& tree, unsigned levels) {
             if (tree.is_leaf(i)) tree.split(i);
 }
 
+std::vector<LatticePoint> lattice_of(const GradedOctree& tree) {
+    Workers workers;
+    return tree.lattice(workers);
+}
+
 std::vector<std::uint32_t> leaves(const GradedOctree& tree) {
     std::vector<std::uint32_t> out;
     for (std::uint32_t i = 0; i < tree.size(); ++i)
@@ -30,7 +35,7 @@ TEST(GradedOctree, EqualLeavesMakeTheBodyCentredCubicLattice) {
     split_all(tree, 3);
     for (const std::uint32_t i : leaves(tree)) tree.use(i);
     tree.balance();
-    const std::vector<LatticePoint> lattice = tree.lattice();
+    const std::vector<LatticePoint> lattice = lattice_of(tree);
     EXPECT_EQ(lattice.size(), 8U * 8 * 8 + 9U * 9 * 9);
     for (const LatticePoint& p : lattice) {
         EXPECT_EQ(p.spacing, 0.5);
@@ -51,9 +56,9 @@ TEST(GradedOctree, EqualLeavesMakeTheBodyCentredCubicLattice) {
 TEST(GradedOctree, UnusedLeavesHaveNoPoints) {
     GradedOctree tree({0, 0, 0}, 1);
     split_all(tree, 2);
-    EXPECT_TRUE(tree.lattice().empty());
+    EXPECT_TRUE(lattice_of(tree).empty());
     tree.use(leaves(tree).front());
-    EXPECT_EQ(tree.lattice().size(), 9U);
+    EXPECT_EQ(lattice_of(tree).size(), 9U);
 }
 
 TEST(GradedOctree, LeavesThatShareACornerDifferByOneLevelAtMost) {
@@ -83,7 +88,7 @@ TEST(GradedOctree, LeavesThatShareACornerDifferByOneLevelAtMost) {
             }
         }
         EXPECT_EQ(volume, 1);
-        std::vector<LatticePoint> lattice = tree.lattice();
+        std::vector<LatticePoint> lattice = lattice_of(tree);
         std::sort(lattice.begin(), lattice.end(), [](const LatticePoint& p, const LatticePoint& q) { return lexicographically_less(p.point, q.point); });
         for (std::size_t i = 1; i < lattice.size(); ++i) ASSERT_NE(lattice[i - 1].point, lattice[i].point);
     }
