@@ -52,16 +52,32 @@ ConformingMesh::ConformingMesh(const ValidPlc& plc, std::span<const CarriedPoint
     fit_arrays();
 }
 
-void ConformingMesh::fit_arrays() {
+std::size_t ConformingMesh::reserve_for_tets() {
     const std::size_t slots = tri_.tets().slots();
-    if (cell_.size() >= slots) return;
+    if (cell_.size() >= slots) return cell_.size();
     // As much room as the tetrahedra have: growing on their own they would be there twice at other times, too.
     const std::size_t room = tri_.tets().capacity();
     cell_.reserve(room);
     record_.reserve(room);
-    const std::size_t ahead = std::min(room, slots + slots / 64 + 64);  // this is asked after every insertion
-    cell_.resize(ahead, CellId{0});
-    record_.resize(ahead, 0);
+    return std::min(room, slots + slots / 64 + 64);  // a little ahead: this is asked after every insertion
+}
+
+void ConformingMesh::fit_arrays() {
+    const std::size_t size = reserve_for_tets();
+    if (size == cell_.size()) return;
+    cell_.resize(size, CellId{0});
+    record_.resize(size, 0);
+}
+
+void ConformingMesh::fit_arrays(Workers& workers) {
+    const std::size_t size = reserve_for_tets(), before = cell_.size();
+    if (size == before) return;
+    cell_.resize_as_is(size);
+    record_.resize_as_is(size);
+    workers.for_ranges(size - before, std::size_t{1} << 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::fill(&cell_[before] + begin, &cell_[before] + end, CellId{0});
+        std::fill(&record_[before] + begin, &record_[before] + end, 0U);
+    });
 }
 
 TetLabels& ConformingMesh::labels_for_writing(TetId t) {

@@ -257,7 +257,10 @@ private:
     [[nodiscard]] std::vector<TetFace> labelled_faces(FacetId f);
     TetLabels& labels_for_writing(TetId t);
     void drop_labels(TetId t);
+    std::size_t reserve_for_tets();
+    /// Makes room for what is known of each tetrahedron.
     void fit_arrays();
+    void fit_arrays(Workers& workers);
     void note_carrier(VertexId v);
     class InsideObserver;
 

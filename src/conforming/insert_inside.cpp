@@ -12,16 +12,16 @@ namespace wellmesh {
 /// Points that encroach nothing destroy no subface or subsegment: labels on the cavity's boundary are inherited, and that is all.
 class ConformingMesh::InsideObserver : public BulkObserver {
 public:
-    InsideObserver(ConformingMesh& mesh, const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on)
-        : mesh_(mesh), is_welcome_(is_welcome), may_go_on_(may_go_on) {}
+    InsideObserver(ConformingMesh& mesh, Workers& workers, const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on)
+        : mesh_(mesh), workers_(workers), is_welcome_(is_welcome), may_go_on_(may_go_on) {}
 
-    void make_room(std::size_t) override { mesh_.fit_arrays(); }
+    void make_room(std::size_t) override { mesh_.fit_arrays(workers_); }
     /// Each zone has records of its own, all of them together as many more as are in use now, and a few.
     void split(std::size_t zones) override {
         std::vector<std::uint32_t>& free = mesh_.free_records_;
         const std::size_t share = (mesh_.records_.size() - free.size()) / zones + kSpareRecords;
         parts_.clear();
-        for (std::size_t z = 0; z < zones; ++z) parts_.emplace_back(mesh_, is_welcome_, may_go_on_);
+        for (std::size_t z = 0; z < zones; ++z) parts_.emplace_back(mesh_, workers_, is_welcome_, may_go_on_);
         for (InsideObserver& part : parts_) {
             part.is_part_ = true;
             for (std::size_t k = 0; k < share; ++k) {
@@ -119,6 +119,7 @@ private:
     }
 
     ConformingMesh& mesh_;
+    Workers& workers_;
     const std::function<bool(const Vec3&, CellId)>& is_welcome_;
     const std::function<bool()>& may_go_on_;
     bool is_part_ = false;
@@ -155,7 +156,7 @@ std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<
     }
     std::vector<std::uint32_t> order(points.size());
     std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(first));
-    InsideObserver observer(*this, is_welcome, may_go_on);
+    InsideObserver observer(*this, workers, is_welcome, may_go_on);
     std::vector<VertexId> left;
     const std::vector<std::uint32_t> refused = tri_.insert_on(workers, order, &observer);
     encroaching = std::move(observer.encroaching());

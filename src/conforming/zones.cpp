@@ -20,7 +20,7 @@ std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones&
         spare_vertices_.insert(spare_vertices_.begin(), more.rbegin(), more.rend());
     }
     tri_.split(workers, zones, room.tets, parts);
-    fit_arrays();
+    fit_arrays(workers);
     while (free_records_.size() < room.records * zones.count()) {
         free_records_.push_back(static_cast<std::uint32_t>(records_.size()));
         records_.push_back(TetLabels{});

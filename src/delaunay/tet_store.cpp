@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "delaunay/tet_store.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "wellmesh/error.hpp"
@@ -28,18 +29,22 @@ void TetStore::release(TetId t) {
     free_.push_back(t);
 }
 
-std::vector<TetId> TetStore::take_slots(std::size_t count) {
-    std::vector<TetId> out;
-    out.reserve(count);
-    while (out.size() < count && !free_.empty()) {
-        out.push_back(free_.back());
-        free_.pop_back();
-    }
-    const std::size_t more = count - out.size(), first = tet_.size();
-    if (first + more > kMaxTets) refuse_size();
-    tet_.resize_as_is(first + more);
-    for (std::size_t i = more; i-- > 0;) out.push_back(TetId{first + i});  // the last one is taken first
+TetStore::Slots TetStore::take_slots(std::size_t count) {
+    Slots out;
+    const std::size_t recycled = std::min(count, free_.size());
+    out.recycled.assign(free_.rbegin(), free_.rbegin() + static_cast<std::ptrdiff_t>(recycled));
+    free_.resize(free_.size() - recycled);
+    out.first = tet_.size();
+    out.count = count - recycled;
+    if (out.first + out.count > kMaxTets) refuse_size();
+    tet_.resize_as_is(out.first + out.count);
     return out;
+}
+
+std::vector<TetId> TetStore::Slots::list() && {
+    recycled.reserve(recycled.size() + count);
+    for (std::size_t i = count; i-- > 0;) recycled.emplace_back(first + i);  // the last one is taken first
+    return std::move(recycled);
 }
 
 TetStore TetStore::view(std::vector<TetId> slots) {

@@ -88,10 +88,17 @@ public:
     void reorder(std::span<const TetId> t, std::span<TetId> scratch, Workers& workers);
 
     // --- views, for several workers at once (Triangulation::insert_in_zones)
+    /// Slots for a view. Whoever takes them for many lets each worker write its own list.
+    struct Slots {
+        std::vector<TetId> recycled;
+        std::size_t first = 0, count = 0;  ///< new ones
+        /// In an order that depends on the slots alone.
+        [[nodiscard]] std::vector<TetId> list() &&;
+    };
     /// The same tetrahedra, with `slots` free ones of its own: take_slots() made them. Valid until this store grows.
     [[nodiscard]] TetStore view(std::vector<TetId> slots);
     /// Slots that are on no free list any more, new ones at the end if there are not as many free: these hold anything. @throws as allocate()
-    [[nodiscard]] std::vector<TetId> take_slots(std::size_t count);
+    [[nodiscard]] Slots take_slots(std::size_t count);
     void empty(TetId t) { tet_[t.index()].corner[0] = VertexId{}; }
     /// How many tetrahedra a view can still hold.
     [[nodiscard]] std::size_t room() const { return free_.size(); }

@@ -34,14 +34,16 @@ void Triangulation::split(Workers& workers, const Zones& zones, std::size_t spar
     for (const auto& piece : counts)
         for (std::size_t z = 0; z < zones.count(); ++z) out.tets[z] += piece[z];
 
+    std::vector<TetStore::Slots> taken(zones.count());
+    for (TetStore::Slots& share : taken) share = tets_.take_slots(spare);
     std::vector<std::vector<TetId>> free(zones.count());
-    for (std::size_t z = 0; z < zones.count(); ++z) {
-        free[z] = tets_.take_slots(spare);
+    workers.for_each(zones.count(), [&](std::size_t z) {
+        free[z] = std::move(taken[z]).list();
         for (const TetId t : free[z]) {
             out.zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);
             tets_.empty(t);
         }
-    }
+    });
     renew_stamps(StampedNumbers::kLastStamp / 2);  // for the views: as many insertions each before numbers are found more slowly
     if (epoch_ > kLastEpoch / 2) {
         std::fill(mark_.begin(), mark_.end(), 0U);

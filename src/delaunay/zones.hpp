@@ -25,9 +25,11 @@ public:
     static constexpr std::size_t kMost = 128;
 
     /// Into how many zones so much work is worth being cut, of which each is to have `least`; 0: into none. Less in later turns, as more zones have more limits.
-    static std::size_t worth(std::size_t tets, std::size_t work, std::size_t least, unsigned turn) {
-        if (work < tets / kTetsPerWork) return 0;
-        const std::size_t most = std::bit_floor(std::min({work / least, static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(tets) / kTetsOfTwo)), kMost}));
+    /// @param least_tets  the same into two zones from so many tetrahedra on
+    static std::size_t worth(std::size_t tets, std::size_t work, std::size_t least, unsigned turn, std::size_t least_tets = kTetsOfTwo) {
+        if (work < tets / kTetsPerWork || tets < least_tets) return 0;
+        const std::size_t by_size = std::max<std::size_t>(2, static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(tets) / kTetsOfTwo)));
+        const std::size_t most = std::bit_floor(std::min({work / least, by_size, kMost}));
         return most < 2 ? 0 : std::max<std::size_t>(2, most >> turn);
     }
     static constexpr unsigned kTurns = 4;
@@ -48,7 +50,7 @@ public:
 
 private:
     /// So many tetrahedra are worth two zones, four times as many worth four, and so on: small zones are mostly limits.
-    static constexpr double kTetsOfTwo = 1 << 15;
+    static constexpr std::size_t kTetsOfTwo = std::size_t{1} << 15;
     /// Cutting and joining costs some ten nanoseconds a tetrahedron, a move or a split some ten microseconds.
     static constexpr std::size_t kTetsPerWork = 2048;
 

@@ -216,6 +216,8 @@ void LatticeSeeder::split_in_zone(double coarseness, std::vector<TetId> waiting,
 
 bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
     constexpr std::size_t kLeastAZone = 256, kSampleAZone = 512;
+    // A cut meets few tetrahedra of the boundary: on its way from coarse to fine even a small mesh is worth two zones.
+    constexpr std::size_t kLeastTets = 4096;
     // Each subsegment is listed by several tetrahedra, and each vertex makes two faces more: half a vertex per entry is measured at most. One takes
     // seven tetrahedra, or less. Who finds no room waits for the next turn.
     constexpr std::size_t kTetsPerVertex = 8, kMoreVertices = 64;
@@ -227,7 +229,7 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
         std::vector<Subsegment> segments;
         std::vector<Subface> faces;
         list_all_too_large(coarseness, waiting, segments, faces);
-        const std::size_t work = segments.size() + faces.size(), count = Zones::worth(mesh_.tets().live(), work, kLeastAZone, turn);
+        const std::size_t work = segments.size() + faces.size(), count = Zones::worth(mesh_.tets().live(), work, kLeastAZone, turn, kLeastTets);
         if (count < 2) break;
         std::vector<Vec3> sample;
         const std::size_t step = std::max<std::size_t>(1, waiting.size() / (kSampleAZone * count));
