@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bulk insertion inside cells, and numbering afterwards.
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -174,6 +175,7 @@ void ConformingMesh::insert_known(VertexId v, const Cavity& cavity, const Placem
 }
 
 void ConformingMesh::renumber_tets(Workers& workers) {
+    constexpr std::size_t kGrain = std::size_t{1} << 15;
     tri_.release_scratch();  // it would be for tetrahedra that are no more
     const Triangulation::Renumbering renumbering = tri_.renumber(workers);
     const std::vector<TetId>& old_of = renumbering.old_of;
@@ -181,25 +183,39 @@ void ConformingMesh::renumber_tets(Workers& workers) {
         std::remove_reference_t<decltype(values)> moved;
         moved.reserve(values.capacity());
         moved.resize_as_is(old_of.size());
-        workers.for_ranges(old_of.size(), std::size_t{1} << 15, [&](std::size_t begin, std::size_t end, std::size_t) {
+        workers.for_ranges(old_of.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) moved[i] = values[old_of[i].index()];
         });
         values = std::move(moved);
     };
     take_along(cell_);
     take_along(record_);
+    // Records in the order of their tetrahedra, none between them: whoever looks for labels all over the mesh walks through memory.
+    std::vector<std::uint32_t> next((old_of.size() + kGrain - 1) / kGrain);
+    workers.for_ranges(old_of.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        next[piece] = static_cast<std::uint32_t>(end - begin - static_cast<std::size_t>(std::count(&record_[0] + begin, &record_[0] + end, 0U)));
+    });
+    std::uint32_t used = 1;  // record 0 means none
+    for (std::uint32_t& n : next) n = std::exchange(used, used + n);
+    SharedArray<TetLabels> moved;
+    moved.reserve(used + used / 4);
+    moved.resize_as_is(used);
+    moved[0] = TetLabels{};
     // Labels stand by corner: they follow their vertices.
-    workers.for_ranges(old_of.size(), std::size_t{1} << 15, [&](std::size_t begin, std::size_t end, std::size_t) {
+    workers.for_ranges(old_of.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         for (std::size_t i = begin; i < end; ++i) {
             if (record_[i] == 0) continue;
-            TetLabels& labels = records_[record_[i]];
-            const TetLabels before = labels;
+            const TetLabels& before = records_[record_[i]];
+            record_[i] = next[piece]++;
+            TetLabels& labels = moved[record_[i]];
             std::array<unsigned, 4> slot{};  // by corner: where it was
             for (unsigned k = 0; k < 4; ++k) slot[k] = renumbering.old_corner(TetId{i}, k);
             for (unsigned k = 0; k < 4; ++k) labels.facets[k] = before.facets[slot[k]];
             for (unsigned e = 0; e < 6; ++e) labels.segments[e] = before.segments[kEdgeOf[slot[kEdgeCorners[e][0]]][slot[kEdgeCorners[e][1]]]];
         }
     });
+    records_ = std::move(moved);
+    free_records_.clear();
 }
 
 }  // namespace wellmesh
