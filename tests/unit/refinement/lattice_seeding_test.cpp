@@ -7,10 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "core/infinity.hpp"
+#include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 #include "support/expect_result.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
+#include "validation/closest_points.hpp"
 #include "wellmesh/generate.hpp"
 
 namespace wellmesh::testing {
@@ -81,6 +84,50 @@ TEST(LatticeSeeding, KeepsClearOfCornersThatPointInwards) {
             ASSERT_GE(std::min({p.x, p.y, p.z, 3 - p.x, 3 - p.y, 3 - p.z}), clearance) << edge_length;
         }
     }
+}
+
+/// Nowhere nearer to the boundary than they may be, everywhere else no farther from each other than the lattice's points are.
+TEST(LatticeSeeding, SeedsAreClearOfTheBoundaryAndFillTheRest) {
+    for (const NamedPlc& named : all_synthetic_plcs())
+        for (const bool varies : {false, true}) {
+            SCOPED_TRACE(fmt::format("{} {}", named.name, varies ? "graded" : "even"));
+            MeshOptions options = sized(0.03 * diagonal(named.plc));
+            const double length = *options.size.edge_length, radius = kCircumradiusPerEdgeLength * length;
+            const Plc plc = transformed(named.plc, 1, 0, 1);
+            if (varies) options.size.at = [&plc, length](const Vec3& p) { return 0.5 * length + 0.05 * distance(p, plc.vertices[0]); };
+            StagedMesh staged(plc, options);
+            staged.conform();
+            Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+            LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), staged.workers).seed();
+            const ConformingMesh& mesh = staged.mesh;
+            const auto to_boundary = [&](const Vec3& p) {
+                double least = kInfinity;
+                for (const ValidFacet& f : staged.plc.facets)
+                    for (const auto& t : f.triangles)
+                        least = std::min(least, distance_to_triangle(p, staged.plc.vertices[t[0].index()], staged.plc.vertices[t[1].index()],
+                                                                     staged.plc.vertices[t[2].index()]));
+                return least;
+            };
+            std::vector<Vec3> seeds;
+            for (std::size_t i = 0; i < mesh.vertex_slots(); ++i)
+                if (mesh.info(VertexId{i}).reason == InsertionReason::lattice && mesh.triangulation().is_inserted(VertexId{i})) seeds.push_back(mesh.point(VertexId{i}));
+            ASSERT_GT(seeds.size(), 500U);
+            for (const Vec3& p : seeds) {
+                const CellId cell = mesh.cell(mesh.triangulation().locate(p, TetId{}));
+                ASSERT_GE(to_boundary(p), 0.4 * kCircumradiusPerEdgeLength * refiner.sizes().edge_length(p, cell));  // 0.5, but for places beside an edge
+            }
+            std::size_t looked_at = 0;
+            for (std::uint64_t k = 0; k < 4000; ++k) {
+                const Vec3 offset{unit_double(mix64(k, 1)) - 0.5, unit_double(mix64(k, 2)) - 0.5, unit_double(mix64(k, 3)) - 0.5};
+                const Vec3 p = seeds[mix64(k) % seeds.size()] + radius * offset;
+                if (to_boundary(p) < 2.5 * radius) continue;
+                ++looked_at;
+                double nearest = kInfinity;
+                for (const Vec3& s : seeds) nearest = std::min(nearest, distance(p, s));
+                ASSERT_LE(nearest, 1.001 * kLatticeScale * radius);
+            }
+            EXPECT_GT(looked_at, 20U);
+        }
 }
 
 TEST(LatticeSeeding, WhereNothingIsAskedNothingChanges) {
