@@ -16,6 +16,7 @@ namespace wellmesh::io {
 namespace {
 
 constexpr std::size_t kLongestQuote = 40;          // bytes of a token that a message repeats
+constexpr std::size_t kLargeFile = std::size_t{1} << 18;  // bytes; smaller ones are read before threads have started
 constexpr std::size_t kChunk = std::size_t{1} << 20;
 
 [[noreturn]] void cannot_read(const std::string& name, const std::string& why) {
@@ -40,8 +41,8 @@ private:
 
 }  // namespace
 
-SourceFile read_source(const std::filesystem::path& path) {
-    SourceFile source{path, path.string(), {}};
+SourceFile read_source(const std::filesystem::path& path, unsigned threads) {
+    SourceFile source{path, path.string(), {}, threads};
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.get() < 0) cannot_read(source.name, system_message(errno));
     struct stat status {};
@@ -63,6 +64,7 @@ SourceFile read_source(const std::filesystem::path& path) {
     }
     bytes.resize(used);
     if (bytes.empty()) fail_in_file(source, "the file is empty");
+    if (bytes.size() >= kLargeFile && threads != 1) source.workers = std::make_unique<Workers>(threads);
     return source;
 }
 

@@ -88,6 +88,42 @@ std::string_view TextScanner::rest_of_line() {
     return {first, static_cast<std::size_t>(last - first)};
 }
 
+std::vector<TextScanner> TextScanner::stretches(std::size_t bytes, std::size_t most) const {
+    std::vector<TextScanner> out;
+    for (const char* first = cursor_; first != end_ && out.size() < most;) {
+        TextScanner& stretch = out.emplace_back(*this);
+        stretch.cursor_ = first;
+        // Only LF is looked for: CR LF stays together, and a text without any LF is one stretch.
+        const std::string_view rest(first, static_cast<std::size_t>(end_ - first));
+        const std::size_t last = bytes < rest.size() ? rest.find('\n', bytes) : std::string_view::npos;
+        first = last == std::string_view::npos ? end_ : first + last + 1;
+        stretch.end_ = first;
+    }
+    return out;
+}
+
+TextScanner::Lines TextScanner::count_lines() const {
+    TextScanner ahead = *this;
+    Lines lines;
+    while (true) {
+        if (!ahead.at_end_of_line()) {
+            ++lines.with_tokens;
+            ahead.skip_line();
+        }
+        if (ahead.cursor_ == ahead.end_) break;
+        ahead.pass_line_end();
+    }
+    lines.ends = ahead.line_ - line_;
+    return lines;
+}
+
+std::size_t TextScanner::count_lines_since(Place from) const {
+    TextScanner until_here = *this;
+    until_here.end_ = cursor_;
+    until_here.move_to(from);
+    return until_here.count_lines().with_tokens;
+}
+
 std::uint32_t TextScanner::line32() const {
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(line_, std::numeric_limits<std::uint32_t>::max()));
 }
