@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "core/huge_pages.hpp"
+
 namespace wellmesh::io {
 namespace {
 
@@ -53,7 +55,9 @@ SourceFile read_source(const std::filesystem::path& path, unsigned threads) {
     std::string& bytes = source.bytes;
     std::size_t used = 0;
     // One byte more than the size, so that the read() that finds the end needs no further room.
-    bytes.resize(S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1 : kChunk);
+    bytes.reserve(S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1 : kChunk);
+    advise_huge_pages(bytes.data(), bytes.capacity());
+    bytes.resize(bytes.capacity());
     while (true) {
         if (used == bytes.size()) bytes.resize(bytes.size() + std::max(kChunk, bytes.size() / 2));
         const ssize_t got = ::read(file.get(), bytes.data() + used, bytes.size() - used);

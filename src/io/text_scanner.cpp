@@ -45,10 +45,10 @@ void TextScanner::skip_blanks() {
 std::string_view TextScanner::next_on_line() {
     skip_blanks();
     const char* const first = cursor_;
-    while (cursor_ != end_) {
-        const Class c = class_of(*cursor_);
-        if (c == Class::blank || c == Class::line_end || c == Class::comment) break;
-        if (c == Class::backslash && cursor_ + 1 != end_ && class_of(cursor_[1]) == Class::line_end) break;
+    while (true) {
+        while (cursor_ != end_ && class_of(*cursor_) == Class::token) ++cursor_;
+        if (cursor_ == end_ || class_of(*cursor_) != Class::backslash) break;
+        if (cursor_ + 1 != end_ && class_of(cursor_[1]) == Class::line_end) break;
         ++cursor_;
     }
     return {first, static_cast<std::size_t>(cursor_ - first)};

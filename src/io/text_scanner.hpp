@@ -54,6 +54,7 @@ public:
         cursor_ = to.byte;
         line_ = to.line;
     }
+
     /// Scanners of the next stretches of the text, each of `bytes` or more, the last one perhaps fewer; all but the first begin with a line. No more than `most`.
     [[nodiscard]] std::vector<TextScanner> stretches(std::size_t bytes, std::size_t most) const;
     struct Lines {
