@@ -26,10 +26,11 @@ struct CheckCommand {
 int run(const CheckCommand& arguments, Interrupt& interrupt) {
     require_valid(arguments.options);
     require_report("--json", arguments.json, {arguments.mesh, arguments.plc, arguments.weights, arguments.exempt});
-    TetMesh mesh = read_mesh(arguments.mesh);
-    if (!arguments.weights.empty()) mesh.weights = read_weights(arguments.weights, mesh.vertices.size());
+    const ReadOptions read{.threads = arguments.options.threads};
+    TetMesh mesh = read_mesh(arguments.mesh, read);
+    if (!arguments.weights.empty()) mesh.weights = read_weights(arguments.weights, mesh.vertices.size(), read);
     std::optional<Plc> plc;
-    if (!arguments.plc.empty()) plc = read_plc(arguments.plc);
+    if (!arguments.plc.empty()) plc = read_plc(arguments.plc, read);
     CertifyOptions options = arguments.options;
     if (!arguments.exempt.empty()) options.exempt = read_exemptions(arguments.exempt, mesh.tets.size());
     const Certificate certificate = certify(mesh, options, plc ? &*plc : nullptr);

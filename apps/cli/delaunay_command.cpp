@@ -32,7 +32,7 @@ int run(const DelaunayCommand& arguments, Interrupt& interrupt) {
     require_report("--json", arguments.json, others);
 
     const Stopwatch reading;
-    const std::vector<Vec3> points = read_points(arguments.points);
+    const std::vector<Vec3> points = read_points(arguments.points, {.threads = arguments.threads});
     const double read_seconds = reading.seconds();
 
     const Stopwatch triangulating;

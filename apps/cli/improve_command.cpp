@@ -31,8 +31,8 @@ void add_improve_command(CLI::App& program, Command& selected) {
             TetMesh mesh;
             Plc plc;
             const auto read = [&] {
-                mesh = read_mesh(job->inputs[0]);
-                plc = read_plc(job->inputs[1]);
+                mesh = read_mesh(job->inputs[0], {.threads = job->options.threads});
+                plc = read_plc(job->inputs[1], {.threads = job->options.threads});
                 read_background(*job);
             };
             return produce_mesh(*job, interrupt, read, [&](const RunControl& control) { return improve(mesh, plc, job->options, control); });

@@ -29,7 +29,7 @@ void add_mesh_command(CLI::App& program, Command& selected) {
         selected = [job, seeds](Interrupt& interrupt) {
             Plc plc;
             const auto read = [&] {
-                plc = read_plc(job->inputs[0]);
+                plc = read_plc(job->inputs[0], {.threads = job->options.threads});
                 read_background(*job);
                 add_seeds(*seeds, plc);
             };

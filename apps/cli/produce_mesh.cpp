@@ -146,7 +146,8 @@ void add_background_flag(CLI::App& command, MeshJob& job) {
 }
 
 void read_background(MeshJob& job) {
-    if (!job.background.empty()) job.options.size.background = std::make_shared<const BackgroundMesh>(read_background_mesh(job.background));
+    if (job.background.empty()) return;
+    job.options.size.background = std::make_shared<const BackgroundMesh>(read_background_mesh(job.background, {.threads = job.options.threads}));
 }
 
 bool goals_met(const MeshResult& result) {

@@ -16,25 +16,29 @@
 
 namespace wellmesh {
 
+struct ReadOptions {
+    unsigned threads = 0;  ///< that parse text, the caller's among them; 0: as many as the machine has cores. Never changes what is read, nor the errors
+};
+
 /// Reads .off .stl .obj .ply .poly .smesh (a .node beside them as they ask; sizes of vertices from a .mtr beside .poly and .smesh), or points, edges and
 /// faces of a .mesh, .msh, .vtp or .vtu.
 /// @throws MeshError  cannot_read, bad_input (file, line, token).
-[[nodiscard]] Plc read_plc(const std::filesystem::path& path);
+[[nodiscard]] Plc read_plc(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads points only: .node .xyz .ply.
-[[nodiscard]] std::vector<Vec3> read_points(const std::filesystem::path& path);
+[[nodiscard]] std::vector<Vec3> read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads a tetrahedral mesh: MEDIT .mesh (ASCII), Gmsh .msh (2.x, 4.1), .vtu (with NAME.boundary.vtu where it stands beside), .node/.ele.
-[[nodiscard]] TetMesh read_mesh(const std::filesystem::path& path);
+[[nodiscard]] TetMesh read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads a mesh with target edge lengths at its vertices: TetGen's .node, .ele and .mtr (any of the three names them), $NodeData of a .msh or point
 /// data of a .vtu, one number a vertex. Of several fields one named `size`, `target_size` or `h` is taken, else the only one.
 /// @throws MeshError  cannot_read, bad_input (file, line, token; no such field, a vertex without a size, a size below 0).
-[[nodiscard]] BackgroundMesh read_background_mesh(const std::filesystem::path& path);
+[[nodiscard]] BackgroundMesh read_background_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Reads the weights of a mesh's vertices: MEDIT's solution format (.sol, one scalar a vertex), or the attribute of a .node.
 /// @param vertices  how many there must be. @throws MeshError  cannot_read, bad_input (file, line, token).
-[[nodiscard]] std::vector<double> read_weights(const std::filesystem::path& path, std::size_t vertices);
+[[nodiscard]] std::vector<double> read_weights(const std::filesystem::path& path, std::size_t vertices, const ReadOptions& options = {});
 
 /// What the references of a MEDIT .mesh say.
 enum class References {
@@ -70,7 +74,7 @@ std::vector<std::filesystem::path> write_exemptions(const std::vector<Exemption>
 [[nodiscard]] std::vector<std::uint64_t> read_exemptions(const std::filesystem::path& path, std::size_t tets);
 
 /// Whether a file is a tetrahedral mesh: a .node or .ele, or a .mesh, .msh or .vtu with tetrahedra. @throws as read_mesh
-[[nodiscard]] bool holds_mesh(const std::filesystem::path& path);
+[[nodiscard]] bool holds_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Writes where the defects of `diagnosis` are as .vtp (VTK polygonal data): points, lines and triangles with the cell data severity (0 note, 1 warning,
 /// 2 error), kind (position in DefectKind), defect (position in the list) and value. @throws MeshError  cannot_write.

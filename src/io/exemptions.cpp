@@ -31,7 +31,7 @@ std::vector<std::filesystem::path> write_exemptions(const std::vector<Exemption>
 }
 
 std::vector<std::uint64_t> read_exemptions(const std::filesystem::path& path, std::size_t tets) {
-    const io::SourceFile source = io::read_source(path);
+    const io::SourceFile source = io::read_source(path, 1);
     io::TextScanner in(source, {});
     std::vector<std::uint64_t> out;
     while (!in.at_end()) {

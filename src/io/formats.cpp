@@ -81,7 +81,7 @@ void check_writable(const Plc& plc) {
 
 }  // namespace
 
-Plc read_plc(const std::filesystem::path& path) {
+Plc read_plc(const std::filesystem::path& path, const ReadOptions& options) {
     const std::string extension = io::lower_case_extension(path);
     Plc (*const reader)(const io::SourceFile&) = extension == ".off"     ? io::read_off
                                                  : extension == ".stl"   ? io::read_stl
@@ -95,40 +95,40 @@ Plc read_plc(const std::filesystem::path& path) {
                                                  : extension == ".vtu"   ? io::read_vtu_surface
                                                                          : nullptr;
     if (reader == nullptr) unknown_format(ErrorCode::cannot_read, Stage::read, "read", path, ".off .stl .obj .ply .poly .smesh .mesh .msh .vtp .vtu");
-    return reader(io::read_source(path));
+    return reader(io::read_source(path, options.threads));
 }
 
-std::vector<Vec3> read_points(const std::filesystem::path& path) {
+std::vector<Vec3> read_points(const std::filesystem::path& path, const ReadOptions& options) {
     const std::string extension = io::lower_case_extension(path);
     std::vector<Vec3> (*const reader)(const io::SourceFile&) = extension == ".node"  ? io::read_node_points
                                                                : extension == ".xyz" ? io::read_xyz_points
                                                                : extension == ".ply" ? io::read_ply_points
                                                                                      : nullptr;
     if (reader == nullptr) unknown_format(ErrorCode::cannot_read, Stage::read, "read points from", path, ".node .xyz .ply");
-    return reader(io::read_source(path));
+    return reader(io::read_source(path, options.threads));
 }
 
-TetMesh read_mesh(const std::filesystem::path& path) {
+TetMesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const std::string extension = io::lower_case_extension(path);
-    if (extension == ".mesh") return io::read_medit_mesh(io::read_source(path));
-    if (extension == ".msh") return io::read_msh_mesh(io::read_source(path));
-    if (extension == ".vtu") return io::read_vtu_mesh(io::read_source(path));
-    if (extension == ".node" || extension == ".ele") return io::read_tetgen_mesh(path);
+    if (extension == ".mesh") return io::read_medit_mesh(io::read_source(path, options.threads));
+    if (extension == ".msh") return io::read_msh_mesh(io::read_source(path, options.threads));
+    if (extension == ".vtu") return io::read_vtu_mesh(io::read_source(path, options.threads));
+    if (extension == ".node" || extension == ".ele") return io::read_tetgen_mesh(path, options.threads);
     unknown_format(ErrorCode::cannot_read, Stage::read, "read a mesh from", path, ".mesh .msh .vtu .node .ele");
 }
 
-BackgroundMesh read_background_mesh(const std::filesystem::path& path) {
+BackgroundMesh read_background_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const std::string extension = io::lower_case_extension(path);
-    if (extension == ".node" || extension == ".ele" || extension == ".mtr") return io::read_tetgen_background(path);
+    if (extension == ".node" || extension == ".ele" || extension == ".mtr") return io::read_tetgen_background(path, options.threads);
     if (extension != ".msh" && extension != ".vtu") unknown_format(ErrorCode::cannot_read, Stage::read, "read sizes from", path, ".msh .vtu .node .ele .mtr");
-    const io::SourceFile source = io::read_source(path);
+    const io::SourceFile source = io::read_source(path, options.threads);
     return io::read_background(source, extension == ".msh" ? io::read_msh(source, false) : io::read_vtu(source, false));
 }
 
-std::vector<double> read_weights(const std::filesystem::path& path, std::size_t vertices) {
+std::vector<double> read_weights(const std::filesystem::path& path, std::size_t vertices, const ReadOptions& options) {
     const std::string extension = io::lower_case_extension(path);
     if (extension != ".sol" && extension != ".node") unknown_format(ErrorCode::cannot_read, Stage::read, "read weights from", path, ".sol .node");
-    const io::SourceFile source = io::read_source(path);
+    const io::SourceFile source = io::read_source(path, options.threads);
     std::vector<double> weights = extension == ".sol" ? io::read_medit_weights(source) : io::read_node_weights(source);
     if (weights.size() != vertices) io::fail_in_file(source, fmt::format("the file has {} weights, the mesh {} vertices", weights.size(), vertices));
     return weights;
@@ -174,12 +174,12 @@ std::vector<std::filesystem::path> write_plc(const Plc& plc, const std::filesyst
     return files.commit();
 }
 
-bool holds_mesh(const std::filesystem::path& path) {
+bool holds_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const std::string extension = io::lower_case_extension(path);
     if (extension == ".node" || extension == ".ele") return true;
-    if (extension == ".mesh") return io::has_medit_tetrahedra(io::read_source(path));
-    if (extension == ".msh") return !io::read_msh(io::read_source(path), true).tets.corners.empty();
-    if (extension == ".vtu") return !io::read_vtu(io::read_source(path), true).tets.corners.empty();
+    if (extension == ".mesh") return io::has_medit_tetrahedra(io::read_source(path, options.threads));
+    if (extension == ".msh") return !io::read_msh(io::read_source(path, options.threads), true).tets.corners.empty();
+    if (extension == ".vtu") return !io::read_vtu(io::read_source(path, options.threads), true).tets.corners.empty();
     return false;
 }
 

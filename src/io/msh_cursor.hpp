@@ -2,7 +2,9 @@
 // Numbers of a Gmsh file, which stand there as text or as bytes.
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -12,13 +14,17 @@
 #include "io/byte_order.hpp"
 #include "io/number_parsing.hpp"
 #include "io/text_precision.hpp"
+#include "io/text_rows.hpp"
 #include "io/text_scanner.hpp"
 
 namespace wellmesh::io {
 
+inline constexpr TextScanner::Syntax kMshSyntax{.hash_comments = false};
+
 class MshCursor {
 public:
-    explicit MshCursor(const SourceFile& source) : in_(source, {.hash_comments = false}) {}
+    /// @param in  of syntax kMshSyntax; must outlive this.
+    explicit MshCursor(TextScanner& in) : in_(in) {}
 
     [[nodiscard]] TextScanner& text() { return in_; }
     [[nodiscard]] const SourceFile& source() const { return in_.source(); }
@@ -68,6 +74,21 @@ public:
         return static_cast<std::size_t>(value);
     }
 
+    /// Reads `n` rows, of text several at once: io::read_rows(), but read() gets a cursor.
+    template <class Tally, class MakeRoom, class Read>
+    void read_rows(std::size_t n, Tally& tally, const MakeRoom& make_room, const Read& read) {
+        if (!binary_)
+            return io::read_rows(in_, n, tally, make_room, [&](TextScanner& part, std::size_t i, Tally& part_tally) {
+                MshCursor in(part);
+                read(in, i, part_tally);
+            });
+        constexpr std::size_t kRoom = 1024;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i % kRoom == 0) make_room(std::min(n, i + kRoom));
+            read(*this, i, tally);
+        }
+    }
+
     [[noreturn]] void fail(const std::string& message) const {
         if (binary_) fail_at_byte(source(), offset(), message);
         in_.fail(message);
@@ -88,7 +109,7 @@ private:
         return value;
     }
 
-    TextScanner in_;
+    TextScanner& in_;
     bool binary_ = false;
     std::endian order_ = std::endian::native;
 };

@@ -11,19 +11,27 @@
 
 namespace wellmesh::io {
 
-void MshNodes::add(std::int64_t tag, const Vec3& p) {
-    if (tag < 1) in_.fail(fmt::format("node {}: numbers are positive", tag));
-    if (points_.size() >= kMostVertices) in_.fail("more nodes than 32-bit numbers hold");
-    tags_.push_back(tag);
-    points_.push_back(p);
+void MshNodes::check(std::int64_t tag, std::size_t row, const MshCursor& in) {
+    if (tag < 1) in.fail(fmt::format("node {}: numbers are positive", tag));
+    if (row >= kMostVertices) in.fail("more nodes than 32-bit numbers hold");
 }
 
-Vec3 MshNodes::read_coordinates() {
+Vec3 MshNodes::read_coordinates(MshCursor& in, TextPrecision& precision) {
     Vec3 p;
-    p.x = in_.coordinate(precision_);
-    p.y = in_.coordinate(precision_);
-    p.z = in_.coordinate(precision_);
+    p.x = in.coordinate(precision);
+    p.y = in.coordinate(precision);
+    p.z = in.coordinate(precision);
     return p;
+}
+
+template <class Read>
+void MshNodes::read_nodes(std::size_t n, const Read& read) {
+    const std::size_t first = points_.size();
+    const auto make_room = [&](std::size_t rows) {
+        points_.resize(first + rows);
+        tags_.resize(first + rows);
+    };
+    in_.read_rows(n, precision_, make_room, [&](MshCursor& in, std::size_t i, TextPrecision& precision) { read(in, first + i, precision); });
 }
 
 void MshNodes::read_2() {
@@ -31,10 +39,11 @@ void MshNodes::read_2() {
     in_.begin_data();
     points_.reserve(count);
     tags_.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::int64_t tag = in_.integer("the number of a node");
-        add(tag, read_coordinates());
-    }
+    read_nodes(count, [&](MshCursor& in, std::size_t row, TextPrecision& precision) {
+        tags_[row] = in.integer("the number of a node");
+        points_[row] = read_coordinates(in, precision);
+        check(tags_[row], row, in);
+    });
     index();
 }
 
@@ -54,13 +63,17 @@ void MshNodes::read_4() {
         const bool parametric = in_.integer("whether a block has parameters") != 0;
         if (dimension < 0 || dimension > 3) in_.fail(fmt::format("the dimension of a block is 0 to 3, not {}", dimension));
         const std::size_t count = in_.count(in_.size("the number of nodes of a block"), "the number of nodes of a block", 8, 8 + 3 * 8);
-        tags.clear();
-        for (std::size_t i = 0; i < count; ++i) tags.push_back(in_.size("the number of a node"));
-        for (const std::int64_t tag : tags) {
-            add(tag, read_coordinates());
+        NoTally none;
+        in_.read_rows(count, none, [&](std::size_t rows) { tags.resize(rows); },
+                      [&](MshCursor& in, std::size_t i, NoTally&) { tags[i] = in.size("the number of a node"); });
+        const std::size_t first = points_.size();
+        read_nodes(count, [&](MshCursor& in, std::size_t row, TextPrecision& precision) {
+            tags_[row] = tags[row - first];
+            points_[row] = read_coordinates(in, precision);
+            check(tags_[row], row, in);
             if (parametric)
-                for (std::int64_t k = 0; k < dimension; ++k) (void)in_.real("a parameter");
-        }
+                for (std::int64_t k = 0; k < dimension; ++k) (void)in.real("a parameter");
+        });
     }
     if (points_.size() != total) in_.fail(fmt::format("$Nodes states {} nodes, its blocks have {}", total, points_.size()));
     index();
@@ -84,14 +97,14 @@ void MshNodes::index() {
     points_ = std::move(points);
 }
 
-std::uint32_t MshNodes::index_of(std::int64_t tag) const {
+std::uint32_t MshNodes::index_of(std::int64_t tag, const MshCursor& in) const {
     if (sequential_) {
         if (tag < 1 || static_cast<std::uint64_t>(tag) > points_.size())
-            in_.fail(fmt::format("node {} does not exist; the file has nodes 1 to {}", tag, points_.size()));
+            in.fail(fmt::format("node {} does not exist; the file has nodes 1 to {}", tag, points_.size()));
         return static_cast<std::uint32_t>(tag - 1);
     }
     const auto at = index_of_.find(tag);
-    if (at == index_of_.end()) in_.fail(fmt::format("node {} does not exist", tag));
+    if (at == index_of_.end()) in.fail(fmt::format("node {} does not exist", tag));
     return at->second;
 }
 

@@ -22,11 +22,15 @@ public:
     void read_4();  ///< and 4.1
 
     /// @throws MeshError{bad_input}  no node has that number.
-    [[nodiscard]] std::uint32_t index_of(std::int64_t tag) const;
+    /// @param in  where it stands
+    [[nodiscard]] std::uint32_t index_of(std::int64_t tag, const MshCursor& in) const;
 
 private:
-    void add(std::int64_t tag, const Vec3& p);
-    [[nodiscard]] Vec3 read_coordinates();
+    /// Reads `n` rows behind those that are there; of text several at once. @param read  read(in, row, precision): sets tag and point `row`
+    template <class Read>
+    void read_nodes(std::size_t n, const Read& read);
+    [[nodiscard]] static Vec3 read_coordinates(MshCursor& in, TextPrecision& precision);
+    static void check(std::int64_t tag, std::size_t row, const MshCursor& in);
     void index();
 
     MshCursor& in_;

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <system_error>
 
 namespace wellmesh::io {
@@ -41,6 +42,16 @@ ParsedReal parse_real(std::string_view token) noexcept {
 std::optional<std::int64_t> parse_integer(std::string_view token) noexcept {
     const std::string_view text = without_plus(token);
     std::int64_t value = 0;
+    const bool negative = text.starts_with('-');
+    const std::string_view digits = text.substr(negative ? 1 : 0);
+    constexpr std::size_t kSafeDigits = 18;  // that 64 bits hold whatever they are: most of what is read, without a check of each digit
+    if (!digits.empty() && digits.size() <= kSafeDigits) {
+        for (const char c : digits) {
+            if (c < '0' || c > '9') return std::nullopt;
+            value = 10 * value + (c - '0');
+        }
+        return negative ? -value : value;
+    }
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
     return value;

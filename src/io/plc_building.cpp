@@ -32,12 +32,15 @@ std::uint32_t vertex_index(const TextScanner& in, std::int64_t number, std::uint
     return static_cast<std::uint32_t>(index);
 }
 
-void add_polygon(Plc& plc, std::vector<std::uint32_t> polygon, std::int32_t marker) {
-    PlcFacet& facet = plc.facets.emplace_back();
+PlcFacet polygon_facet(std::vector<std::uint32_t> polygon, std::int32_t marker) {
+    PlcFacet facet;
     facet.polygons.reserve(1);
     facet.polygons.push_back(std::move(polygon));
     facet.marker = marker;
+    return facet;
 }
+
+void add_polygon(Plc& plc, std::vector<std::uint32_t> polygon, std::int32_t marker) { plc.facets.push_back(polygon_facet(std::move(polygon), marker)); }
 
 Plc make_surface(const SourceFile& source) {
     Plc plc;

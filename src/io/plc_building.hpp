@@ -25,7 +25,9 @@ Vec3 read_seed(TextScanner& in);
 /// `number` counts from `first`; the result from 0. @throws MeshError{bad_input} naming the valid range.
 std::uint32_t vertex_index(const TextScanner& in, std::int64_t number, std::uint32_t first, std::size_t vertices);
 
-/// Adds a facet of one polygon.
+/// A facet of one polygon.
+[[nodiscard]] PlcFacet polygon_facet(std::vector<std::uint32_t> polygon, std::int32_t marker);
+/// Adds such a facet.
 void add_polygon(Plc& plc, std::vector<std::uint32_t> polygon, std::int32_t marker);
 
 /// An empty complex as surface files mean it: consistently oriented, coplanar neighbours are one facet.

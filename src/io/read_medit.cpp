@@ -19,9 +19,19 @@
 #include "io/number_parsing.hpp"
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
 namespace {
+
+/// Corner numbers (from 0) are checked in the end, because sections come in any order. This is the last one of the largest.
+struct LargestCorner {
+    std::uint32_t corner = 0;
+    std::uint64_t line = 0;
+    void join(const LargestCorner& later) {
+        if (later.corner >= corner) *this = later;
+    }
+};
 
 template <std::size_t N>
 struct Elements {
@@ -29,9 +39,7 @@ struct Elements {
     std::vector<std::int32_t> references;
     std::vector<std::uint32_t> lines;
     bool given = false;
-    /// Corner numbers (from 0) are checked in the end, because sections come in any order. This is the largest and its line.
-    std::uint32_t largest = 0;
-    std::uint64_t largest_line = 0;
+    LargestCorner largest;
 };
 
 struct PassedOver {
@@ -188,11 +196,16 @@ private:
         vertices_.reserve(count);
         vertex_references_.reserve(count);
         if (as_surface_) vertex_lines_.reserve(count);
-        for (std::size_t v = 0; v < count; ++v) {
-            vertices_.push_back(read_point(in_, precision_));
-            if (as_surface_) vertex_lines_.push_back(in_.line32());
-            vertex_references_.push_back(in_.integer32("a reference"));
-        }
+        const auto make_room = [&](std::size_t rows) {
+            vertices_.resize(rows);
+            vertex_references_.resize(rows);
+            if (as_surface_) vertex_lines_.resize(rows);
+        };
+        read_rows(in_, count, precision_, make_room, [&](TextScanner& in, std::size_t v, TextPrecision& precision) {
+            vertices_[v] = read_point(in, precision);
+            if (as_surface_) vertex_lines_[v] = in.line32();
+            vertex_references_[v] = in.integer32("a reference");
+        });
     }
 
     template <std::size_t N>
@@ -203,29 +216,29 @@ private:
         elements.corners.reserve(count);
         elements.references.reserve(count);
         if (as_surface_) elements.lines.reserve(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            std::array<std::uint32_t, N> corners{};
-            for (std::uint32_t& corner : corners) {
-                const std::int64_t number = in_.integer("a vertex number");
+        const auto make_room = [&](std::size_t rows) {
+            elements.corners.resize(rows);
+            elements.references.resize(rows);
+            if (as_surface_) elements.lines.resize(rows);
+        };
+        read_rows(in_, count, elements.largest, make_room, [&](TextScanner& in, std::size_t i, LargestCorner& largest) {
+            for (std::uint32_t& corner : elements.corners[i]) {
+                const std::int64_t number = in.integer("a vertex number");
                 if (number < 1 || number > static_cast<std::int64_t>(kMostVertices))
-                    in_.fail(fmt::format("vertex {} does not exist; numbers count from 1", number));
+                    in.fail(fmt::format("vertex {} does not exist; numbers count from 1", number));
                 corner = static_cast<std::uint32_t>(number - 1);
-                if (corner >= elements.largest) {
-                    elements.largest = corner;
-                    elements.largest_line = in_.line();
-                }
+                largest.join({corner, in.line()});
             }
-            elements.corners.push_back(corners);
-            if (as_surface_) elements.lines.push_back(in_.line32());
-            elements.references.push_back(in_.integer32("a reference"));
-        }
+            if (as_surface_) elements.lines[i] = in.line32();
+            elements.references[i] = in.integer32("a reference");
+        });
     }
 
     template <std::size_t N>
     void check(const Elements<N>& elements) const {
-        if (!elements.corners.empty() && elements.largest >= vertices_.size())
-            fail_at_line(in_.source(), elements.largest_line,
-                         fmt::format("vertex {} does not exist; the file has {} vertices", std::uint64_t{elements.largest} + 1, vertices_.size()));
+        if (!elements.corners.empty() && elements.largest.corner >= vertices_.size())
+            fail_at_line(in_.source(), elements.largest.line,
+                         fmt::format("vertex {} does not exist; the file has {} vertices", std::uint64_t{elements.largest.corner} + 1, vertices_.size()));
     }
 
     void read_other_cells(const PassedOver& cell) {
@@ -235,11 +248,14 @@ private:
     }
 
     void pass_rows(std::size_t rows, std::size_t width) {
-        for (std::size_t i = 0; i < rows * width; ++i) {
-            const std::string_view token = in_.next();
-            // Enough to notice a keyword where the count promises more rows; the values do not matter.
-            if (token.empty() || token.find_first_of("0123456789") == std::string_view::npos) in_.fail_expected(token, "a number");
-        }
+        NoTally none;
+        read_rows(in_, rows, none, [](std::size_t) {}, [&](TextScanner& in, std::size_t, NoTally&) {
+            for (std::size_t k = 0; k < width; ++k) {
+                const std::string_view token = in.next();
+                // Enough to notice a keyword where the count promises more rows; the values do not matter.
+                if (token.empty() || token.find_first_of("0123456789") == std::string_view::npos) in.fail_expected(token, "a number");
+            }
+        });
     }
 
     template <std::size_t N>

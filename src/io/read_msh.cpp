@@ -52,7 +52,7 @@ constexpr std::array<ElementType, 19> kElementTypes{{{1, 1, 2, "line"},
 
 class MshReader {
 public:
-    MshReader(const SourceFile& source, bool as_surface) : in_(source), as_surface_(as_surface) {}
+    MshReader(const SourceFile& source, bool as_surface) : text_(source, kMshSyntax), in_(text_), as_surface_(as_surface) {}
 
     MixedMesh read() {
         read_format();
@@ -181,34 +181,47 @@ private:
     }
 
     /// @return null: to be passed over
-    const ElementType* element_type(std::int64_t type, std::int64_t element) const {
+    const ElementType* element_type(std::int64_t type, std::int64_t element, const MshCursor& in) const {
         for (const ElementType& known : kElementTypes) {
             if (known.type != type) continue;
             const bool linear = type <= 4 || type == 15;
             if (!linear && !(as_surface_ && known.dimension == 3))
-                in_.fail(fmt::format("element {} is a {}; only points, lines, triangles, quadrilaterals and tetrahedra of first order are read",
+                in.fail(fmt::format("element {} is a {}; only points, lines, triangles, quadrilaterals and tetrahedra of first order are read",
                                      element, known.name));
             return &known;
         }
-        in_.fail(fmt::format(
+        in.fail(fmt::format(
             "element {} has Gmsh's type {}, which is not read; only points, lines, triangles, quadrilaterals and tetrahedra of first order are",
             element, type));
     }
 
+    struct Element {
+        const ElementType* type;
+        std::int32_t marker, entity;
+        std::array<std::uint32_t, 4> corners;
+    };
+    using Elements = RowsInOrder<Element, MshReader>;
+    friend Elements;
+
     template <bool kWide>
-    void read_element(const ElementType& type, std::int32_t marker, std::int32_t entity) {
-        std::array<std::uint32_t, 4> c{};
+    Element read_element(MshCursor& in, const ElementType& type, std::int32_t marker, std::int32_t entity) const {
+        Element element{&type, marker, entity, {}};
         for (std::size_t k = 0; k < type.nodes; ++k) {
-            const std::int64_t tag = kWide ? in_.size("the number of a node") : in_.integer("the number of a node");
-            if (k < c.size()) c[k] = nodes_.index_of(tag);
+            const std::int64_t tag = kWide ? in.size("the number of a node") : in.integer("the number of a node");
+            if (k < element.corners.size()) element.corners[k] = nodes_.index_of(tag, in);
         }
-        if (!kWide) {  // version 2 lists what is in several groups once for each, one after the other; the first group counts
-            const LastElement element{type.type, entity, c};
-            if (element == last_ && marker != last_marker_) return;
-            last_ = element;
+        return element;
+    }
+
+    void take(const Element& element) {
+        const auto& [type, marker, entity, c] = element;
+        if (!four_) {  // version 2 lists what is in several groups once for each, one after the other; the first group counts
+            const LastElement kept{type->type, entity, c};
+            if (kept == last_ && marker != last_marker_) return;
+            last_ = kept;
             last_marker_ = marker;
         }
-        switch (type.type) {
+        switch (type->type) {
             case 15:
                 return out_.vertices.add({c[0]}, marker, entity);
             case 1:
@@ -233,25 +246,34 @@ private:
     void read_elements_2() {
         const std::size_t count = in_.count(in_.text().integer("the number of elements"), "the number of elements", 8, 4 + 4);
         in_.begin_data();
+        if (in_.binary()) return read_blocks_2(count);
+        Elements elements{this};
+        in_.read_rows(count, elements, [](std::size_t) {}, [&](MshCursor& in, std::size_t, Elements& to) {
+            const std::int64_t number = in.integer("the number of an element"), type = in.integer("the type of an element");
+            const std::size_t tags = in.count(in.integer("the number of tags"), "the number of tags", 2, 4);
+            to.add(read_element_2(in, number, type, tags));
+        });
+    }
+
+    void read_blocks_2(std::size_t count) {
         for (std::size_t i = 0; i < count;) {
-            std::int64_t number = in_.binary() ? 0 : in_.integer("the number of an element");
-            const std::int64_t type_number = in_.integer("the type of an element");
-            const std::int64_t follow = in_.binary() ? in_.integer("the number of elements of a block") : 1;
-            const std::int64_t tag_count = in_.integer("the number of tags");
+            const std::int64_t type = in_.integer("the type of an element"), follow = in_.integer("the number of elements of a block"),
+                               tag_count = in_.integer("the number of tags");
             if (follow < 1 || static_cast<std::uint64_t>(follow) > count - i)
                 in_.fail(fmt::format("a block of {} elements, of which {} are left", follow, count - i));
             const std::size_t tags = in_.count(tag_count, "the number of tags", 2, 4);
-            for (std::int64_t e = 0; e < follow; ++e, ++i) {
-                if (in_.binary()) number = in_.integer("the number of an element");
-                const ElementType& type = *element_type(type_number, number);
-                std::array<std::int64_t, 2> kept{0, 0};  // physical group, entity; partitions follow
-                for (std::size_t t = 0; t < tags; ++t) {
-                    const std::int64_t tag = in_.integer("a tag");
-                    if (t < 2) kept[t] = tag;
-                }
-                read_element<false>(type, reference(in_, std::abs(kept[0])), reference(in_, kept[1]));
-            }
+            for (std::int64_t e = 0; e < follow; ++e, ++i) take(read_element_2(in_, in_.integer("the number of an element"), type, tags));
         }
+    }
+
+    Element read_element_2(MshCursor& in, std::int64_t number, std::int64_t type_number, std::size_t tags) const {
+        const ElementType& type = *element_type(type_number, number, in);
+        std::array<std::int64_t, 2> kept{0, 0};  // physical group, entity; partitions follow
+        for (std::size_t t = 0; t < tags; ++t) {
+            const std::int64_t tag = in.integer("a tag");
+            if (t < 2) kept[t] = tag;
+        }
+        return read_element<false>(in, type, reference(in, std::abs(kept[0])), reference(in, kept[1]));
     }
 
     void read_elements_4() {
@@ -268,10 +290,12 @@ private:
             const std::size_t count = in_.count(in_.size("the number of elements of a block"), "the number of elements of a block", 4, 8 + 8);
             const auto& groups = group_of_[static_cast<std::size_t>(dimension)];
             const auto group = groups.find(entity);
-            for (std::size_t i = 0; i < count; ++i) {
-                const ElementType& type = *element_type(type_number, in_.size("the number of an element"));
-                read_element<true>(type, group == groups.end() ? 0 : group->second, reference(in_, entity));
-            }
+            const std::int32_t marker = group == groups.end() ? 0 : group->second;
+            Elements in_order{this};
+            in_.read_rows(count, in_order, [](std::size_t) {}, [&](MshCursor& in, std::size_t, Elements& to) {
+                const ElementType& type = *element_type(type_number, in.size("the number of an element"), in);
+                to.add(read_element<true>(in, type, marker, reference(in, entity)));
+            });
             read += static_cast<std::int64_t>(count);
         }
         if (read != elements) in_.fail(fmt::format("$Elements states {} elements, its blocks have {}", elements, read));
@@ -302,7 +326,7 @@ private:
         const bool keep = components == 1 && entries >= out_.points.size();
         std::vector<double> values(keep ? out_.points.size() : 0, std::numeric_limits<double>::quiet_NaN());
         for (std::size_t i = 0; i < entries; ++i) {
-            const std::uint32_t at = nodes_.index_of(in_.integer("the number of a node"));
+            const std::uint32_t at = nodes_.index_of(in_.integer("the number of a node"), in_);
             for (std::size_t k = 0; k < components; ++k) {
                 const double value = in_.real("a value");
                 if (keep) values[at] = value;
@@ -318,6 +342,7 @@ private:
         friend bool operator==(const LastElement&, const LastElement&) = default;
     };
 
+    TextScanner text_;
     MshCursor in_;
     TextPrecision precision_;
     bool as_surface_, four_ = false, nodes_given_ = false, elements_given_ = false;

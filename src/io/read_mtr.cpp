@@ -8,6 +8,7 @@
 
 #include "io/readers.hpp"
 #include "io/tetgen_nodes.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
 
@@ -22,20 +23,21 @@ std::vector<double> read_mtr(const SourceFile& source, std::size_t points) {
     if (!in.at_end_of_line()) in.fail_expected(in.next_on_line(), "the end of the line after the counts");
     std::vector<double> sizes;
     sizes.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        sizes.push_back(in.real("a size"));
-        if (!(sizes.back() >= 0)) in.fail(fmt::format("a size is a number above 0, or 0 for none, not {}", sizes.back()));
-        in.skip_line();
-    }
+    NoTally none;
+    read_rows(in, count, none, [&](std::size_t rows) { sizes.resize(rows); }, [&](TextScanner& row, std::size_t i, NoTally&) {
+        sizes[i] = row.real("a size");
+        if (!(sizes[i] >= 0)) row.fail(fmt::format("a size is a number above 0, or 0 for none, not {}", sizes[i]));
+        row.skip_line();
+    });
     if (!in.at_end()) in.fail_expected(in.next(), fmt::format("nothing after the {} sizes", count).c_str());
     return sizes;
 }
 
-BackgroundMesh read_tetgen_background(const std::filesystem::path& path) {
-    BackgroundMesh background{read_tetgen_mesh(path), {}};
+BackgroundMesh read_tetgen_background(const std::filesystem::path& path, unsigned threads) {
+    BackgroundMesh background{read_tetgen_mesh(path, threads), {}};
     std::filesystem::path sizes = path;
     sizes.replace_extension(".mtr");
-    background.sizes = read_mtr(read_source(sizes), background.mesh.vertices.size());
+    background.sizes = read_mtr(read_source(sizes, threads), background.mesh.vertices.size());
     return background;
 }
 

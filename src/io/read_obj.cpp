@@ -4,7 +4,10 @@
 // concern the shape and are passed over; unknown ones are errors, because the file is then probably no OBJ.
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +20,7 @@
 #include "io/mixed_mesh.hpp"
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
 namespace {
@@ -26,12 +30,66 @@ constexpr std::array<std::string_view, 33> kPassedOverWords{
     "shadow_obj", "trace_obj", "ctech", "stech", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm",
     "trim", "hole", "scrv", "sp", "end", "con", "call", "csh"};
 
+struct ObjVertices {
+    std::vector<Vec3> points;
+    std::vector<std::uint32_t> lines;
+    TextPrecision precision;
+    void join(ObjVertices&& later) {
+        points.insert(points.end(), later.points.begin(), later.points.end());
+        lines.insert(lines.end(), later.lines.begin(), later.lines.end());
+        precision.join(later.precision);
+    }
+};
+
+/// The first of the largest vertex numbers (from 0) that are used before the vertex stands in the file, and its line.
+struct ForwardReference {
+    std::optional<std::uint32_t> vertex;
+    std::uint64_t line = 0;
+    void join(const ForwardReference& later) {
+        if (later.vertex && (!vertex || *later.vertex > *vertex)) *this = later;
+    }
+};
+
+struct ObjFacets {
+    std::vector<PlcFacet> facets;
+    std::vector<std::uint32_t> lines;
+    ForwardReference forward;
+    void join(ObjFacets&& later) {
+        facets.insert(facets.end(), std::make_move_iterator(later.facets.begin()), std::make_move_iterator(later.facets.end()));
+        lines.insert(lines.end(), later.lines.begin(), later.lines.end());
+        forward.join(later.forward);
+    }
+};
+
+bool is_passed_over(std::string_view word) { return std::find(kPassedOverWords.begin(), kPassedOverWords.end(), word) != kPassedOverWords.end(); }
+
+bool is_facet(std::string_view word) { return word == "f" || word == "fo"; }  // fo: the name that an early version of the format used
+
 class ObjReader {
 public:
     explicit ObjReader(const SourceFile& source) : in_(source, {.backslash_continues = true}), plc_(make_surface(source)) {}
 
     Plc read() {
-        for (std::string_view word = in_.next(); !word.empty(); word = in_.next()) read_statement(word);
+        for (TextScanner::Place begin = in_.place();; begin = in_.place()) {
+            const std::string_view word = in_.next();
+            if (word.empty()) break;
+            if (word == "v") {
+                in_.move_to(begin);
+                read_vertices();
+            } else if (is_facet(word)) {
+                in_.move_to(begin);
+                read_facets();
+            } else if (is_passed_over(word)) {
+                in_.move_to(begin);
+                pass_over();
+            } else {
+                read_statement(word);
+            }
+        }
+        plc_.vertices = std::move(vertices_.points);
+        plc_.vertex_lines = std::move(vertices_.lines);
+        plc_.facets = std::move(facets_.facets);
+        plc_.facet_lines = std::move(facets_.lines);
         if (plc_.vertices.empty()) in_.fail("expected 'v' statements, but the file ends without any");
         check_forward_references();
         name_markers();
@@ -41,79 +99,103 @@ public:
             plc_.names = {};
         }
         plc_.first_number = 1;
-        plc_.relative_rounding = precision_.relative_rounding();
+        plc_.relative_rounding = vertices_.precision.relative_rounding();
         normalise_zeros(plc_.vertices);
         return std::move(plc_);
     }
 
 private:
+    /// Reads statements whose words `wanted` wants, for as long as they follow each other. @param read  read(in, tally), behind the word
+    template <class Tally, class Read>
+    void read_run(Tally& tally, bool (*wanted)(std::string_view), const Read& read) {
+        constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+        read_rows_while(in_, kAll, tally, [](std::size_t) {}, [&](TextScanner& in, std::size_t i, Tally& to) {
+            const TextScanner::Place begin = in.place();
+            if (!wanted(in.next())) {
+                in.move_to(begin);
+                return false;
+            }
+            read(in, i, to);
+            return true;
+        });
+    }
+
+    void read_vertices() {
+        const std::size_t before = vertices_.points.size();
+        read_run(vertices_, [](std::string_view word) { return word == "v"; }, [&](TextScanner& in, std::size_t i, ObjVertices& to) {
+            if (before + i >= kMostVertices) in.fail("more vertices than 32-bit numbers hold");
+            to.lines.push_back(in.line32());
+            Vec3 point;
+            for (double* const coordinate : {&point.x, &point.y, &point.z}) {
+                const std::string_view token = in.next_on_line();
+                *coordinate = in.to_real(token, "a coordinate");
+                to.precision.note(token, *coordinate);
+            }
+            to.points.push_back(point);
+            for (std::string_view token = in.next_on_line(); !token.empty(); token = in.next_on_line()) (void)in.to_real(token, "a weight or colour");
+        });
+    }
+
+    void read_facets() {
+        const std::int32_t marker = current_marker();
+        read_run(facets_, is_facet, [&](TextScanner& in, std::size_t, ObjFacets& to) {
+            to.lines.push_back(in.line32());
+            to.facets.push_back(polygon_facet(read_corners(in, to.forward), marker));
+        });
+    }
+
+    void pass_over() {
+        NoTally none;
+        read_run(none, is_passed_over, [](TextScanner& in, std::size_t, NoTally&) {
+            while (!in.next_on_line().empty()) {}  // not skip_line(): the statement may continue on the next line
+        });
+    }
+
     void read_statement(std::string_view word) {
-        if (word == "v") {
-            read_vertex();
-        } else if (word == "f" || word == "fo") {  // fo: the name that an early version of the format used
-            const std::uint32_t line = in_.line32();
-            read_corners();
-            plc_.facet_lines.push_back(line);
-            add_polygon(plc_, corners_, current_marker());
-        } else if (word == "l") {
-            read_corners();
-            for (std::size_t i = 1; i < corners_.size(); ++i) plc_.segments.push_back({{corners_[i - 1], corners_[i]}, current_marker()});
+        if (word == "l") {
+            const std::vector<std::uint32_t> corners = read_corners(in_, facets_.forward);
+            for (std::size_t i = 1; i < corners.size(); ++i) plc_.segments.push_back({{corners[i - 1], corners[i]}, current_marker()});
         } else if (word == "o" || word == "g" || word == "usemtl") {
             names_[word == "o" ? 0U : word == "g" ? 1U : 2U] = std::string(in_.rest_of_line());
             marker_known_ = false;
-        } else if (std::find(kPassedOverWords.begin(), kPassedOverWords.end(), word) != kPassedOverWords.end()) {
-            while (!in_.next_on_line().empty()) {}  // not skip_line(): the statement may continue on the next line
         } else {
             in_.fail_expected(word, "an OBJ statement (v, vt, vn, f, l, o, g, ...)");
         }
     }
 
-    void read_vertex() {
-        if (plc_.vertices.size() >= kMostVertices) in_.fail("more vertices than 32-bit numbers hold");
-        plc_.vertex_lines.push_back(in_.line32());
-        Vec3 point;
-        for (double* const coordinate : {&point.x, &point.y, &point.z}) {
-            const std::string_view token = in_.next_on_line();
-            *coordinate = in_.to_real(token, "a coordinate");
-            precision_.note(token, *coordinate);
-        }
-        plc_.vertices.push_back(point);
-        for (std::string_view token = in_.next_on_line(); !token.empty(); token = in_.next_on_line())
-            (void)in_.to_real(token, "a weight or colour");
+    std::vector<std::uint32_t> read_corners(TextScanner& in, ForwardReference& forward) const {
+        std::vector<std::uint32_t> corners;
+        corners.reserve(4);  // rarely more
+        for (std::string_view token = in.next_on_line(); !token.empty(); token = in.next_on_line()) corners.push_back(read_corner(in, token, forward));
+        return corners;
     }
 
-    void read_corners() {
-        corners_.clear();
-        for (std::string_view token = in_.next_on_line(); !token.empty(); token = in_.next_on_line()) corners_.push_back(read_corner(token));
-    }
-
-    std::uint32_t read_corner(std::string_view token) {
+    std::uint32_t read_corner(const TextScanner& in, std::string_view token, ForwardReference& forward) const {
         const std::size_t slash = token.find('/');
-        const std::int64_t number = in_.to_integer(token.substr(0, slash), "a vertex number");
-        if (slash != std::string_view::npos) check_texture_and_normal(token.substr(slash + 1), token);
-        const auto so_far = static_cast<std::int64_t>(plc_.vertices.size());
-        if (number == 0) in_.fail("vertex 0 does not exist: OBJ counts from 1, or back from -1");
-        if (number < -so_far) in_.fail(fmt::format("vertex {} does not exist: only {} vertices stand before it", number, so_far));
-        if (number > static_cast<std::int64_t>(kMostVertices)) in_.fail(fmt::format("vertex {} does not exist", number));
-        const std::int64_t index = number < 0 ? so_far + number : number - 1;
-        if (index >= so_far && (!forward_ || index > static_cast<std::int64_t>(forward_->first)))
-            forward_ = {static_cast<std::uint32_t>(index), in_.line()};
-        return static_cast<std::uint32_t>(index);
+        const std::int64_t number = in.to_integer(token.substr(0, slash), "a vertex number");
+        if (slash != std::string_view::npos) check_texture_and_normal(in, token.substr(slash + 1), token);
+        const auto so_far = static_cast<std::int64_t>(vertices_.points.size());
+        if (number == 0) in.fail("vertex 0 does not exist: OBJ counts from 1, or back from -1");
+        if (number < -so_far) in.fail(fmt::format("vertex {} does not exist: only {} vertices stand before it", number, so_far));
+        if (number > static_cast<std::int64_t>(kMostVertices)) in.fail(fmt::format("vertex {} does not exist", number));
+        const auto index = static_cast<std::uint32_t>(number < 0 ? so_far + number : number - 1);
+        if (index >= so_far) forward.join({index, in.line()});
+        return index;
     }
 
-    void check_texture_and_normal(std::string_view rest, std::string_view token) const {
+    static void check_texture_and_normal(const TextScanner& in, std::string_view rest, std::string_view token) {
         const std::size_t slash = rest.find('/');
         for (const std::string_view part : {rest.substr(0, slash), slash == std::string_view::npos ? std::string_view{} : rest.substr(slash + 1)})
             if (!part.empty() && part.find_first_not_of("+-0123456789") != std::string_view::npos)
-                in_.fail_expected(token, "vertex/texture/normal numbers");
+                in.fail_expected(token, "vertex/texture/normal numbers");
     }
 
     /// Vertices may follow the faces that use them, so the largest such number is checked at the end.
     void check_forward_references() const {
-        if (forward_ && forward_->first >= plc_.vertices.size())
-            fail_at_line(
-                in_.source(), forward_->second,
-                fmt::format("vertex {} does not exist; valid numbers are 1 to {}", std::uint64_t{forward_->first} + 1, plc_.vertices.size()));
+        const ForwardReference& forward = facets_.forward;
+        if (forward.vertex && *forward.vertex >= plc_.vertices.size())
+            fail_at_line(in_.source(), forward.line,
+                         fmt::format("vertex {} does not exist; valid numbers are 1 to {}", std::uint64_t{*forward.vertex} + 1, plc_.vertices.size()));
     }
 
     std::int32_t current_marker() {
@@ -147,10 +229,9 @@ private:
     }
 
     TextScanner in_;
-    TextPrecision precision_;
-    Plc plc_;
-    std::vector<std::uint32_t> corners_;
-    std::optional<std::pair<std::uint32_t, std::uint64_t>> forward_;  // largest forward reference and its line
+    Plc plc_;  // vertices and facets in the end
+    ObjVertices vertices_;
+    ObjFacets facets_;
     std::array<std::string, 3> names_;                                // of the current object, group, material
     std::unordered_map<std::string, std::int32_t> groups_;            // only looked up
     std::vector<std::array<std::string, 3>> group_names_;             // by marker - 1

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // OFF: [ST][C][N]OFF, counts (on the header line or below), vertices, faces with colours after them.
 // Numbers after a vertex's coordinates (normal, colour, texture) and after a face's vertices (colour) are checked, not used.
+#include <cstddef>
+#include <cstdint>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
 namespace {
@@ -49,21 +53,30 @@ Plc read_off(const SourceFile& source) {
     TextPrecision precision;
     plc.vertices.reserve(vertices);
     plc.vertex_lines.reserve(vertices);
-    for (std::size_t v = 0; v < vertices; ++v) {
-        plc.vertices.push_back(read_point(in, precision));
-        plc.vertex_lines.push_back(in.line32());
-        pass_numbers_on_line(in, "a normal, colour or texture coordinate");
-    }
+    const auto room_for_vertices = [&](std::size_t rows) {
+        plc.vertices.resize(rows);
+        plc.vertex_lines.resize(rows);
+    };
+    read_rows(in, vertices, precision, room_for_vertices, [&](TextScanner& row, std::size_t v, TextPrecision& noted) {
+        plc.vertices[v] = read_point(row, noted);
+        plc.vertex_lines[v] = row.line32();
+        pass_numbers_on_line(row, "a normal, colour or texture coordinate");
+    });
     plc.facets.reserve(faces);
     plc.facet_lines.reserve(faces);
-    for (std::size_t f = 0; f < faces; ++f) {
-        const std::size_t corners = in.count("the number of vertices of a face", 2);
-        plc.facet_lines.push_back(in.line32());
+    const auto room_for_faces = [&](std::size_t rows) {
+        plc.facets.resize(rows);
+        plc.facet_lines.resize(rows);
+    };
+    NoTally none;
+    read_rows(in, faces, none, room_for_faces, [&](TextScanner& row, std::size_t f, NoTally&) {
+        const std::size_t corners = row.count("the number of vertices of a face", 2);
+        plc.facet_lines[f] = row.line32();
         std::vector<std::uint32_t> polygon(corners);
-        for (std::uint32_t& corner : polygon) corner = vertex_index(in, in.integer("a vertex number"), 0, vertices);
-        add_polygon(plc, std::move(polygon), 0);
-        pass_numbers_on_line(in, "a colour");
-    }
+        for (std::uint32_t& corner : polygon) corner = vertex_index(row, row.integer("a vertex number"), 0, vertices);
+        plc.facets[f] = polygon_facet(std::move(polygon), 0);
+        pass_numbers_on_line(row, "a colour");
+    });
     if (!in.at_end()) in.fail_expected(in.next(), fmt::format("nothing after the {} faces that the header states", faces).c_str());
     plc.relative_rounding = precision.relative_rounding();
     normalise_zeros(plc.vertices);

@@ -18,6 +18,7 @@
 #include "io/number_parsing.hpp"
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
 namespace {
@@ -202,8 +203,20 @@ private:
         else if (element.name == "face" && plc_.facets.empty() && indices_of(element))
             read_faces(element);
         else
-            for (item_ = 0; item_ < element.count; ++item_)
-                for (const Property& property : element.properties) pass_property(element, property);
+            read_items(element, [](std::size_t) {}, [&](TextScanner& in, std::size_t item, TextPrecision&) {
+                for (const Property& property : element.properties) pass_property(in, item, element, property);
+            });
+    }
+
+    /// Calls make_room(m) before it calls read(in, item, precision) for items below m; of text several at once (read_rows()).
+    template <class MakeRoom, class Read>
+    void read_items(const Element& element, const MakeRoom& make_room, const Read& read) {
+        if (text_) return read_rows(in_, element.count, precision_, make_room, read);
+        constexpr std::size_t kRoom = 1024;
+        for (std::size_t item = 0; item < element.count; ++item) {
+            if (item % kRoom == 0) make_room(std::min(element.count, item + kRoom));
+            read(in_, item, precision_);
+        }
     }
 
     void read_vertices(const Element& element) {
@@ -212,52 +225,61 @@ private:
         for (std::size_t axis = 0; axis < 3; ++axis) axis_of[*element.find(std::array{"x", "y", "z"}[axis])] = axis;
         for (std::size_t i = 0; i < axis_of.size(); ++i) float32_ = float32_ || (axis_of[i] != kNoAxis && element.properties[i].type == Type::float32);
         plc_.vertices.reserve(element.count);
-        for (item_ = 0; item_ < element.count; ++item_) {
+        const auto make_room = [&](std::size_t items) {
+            plc_.vertices.resize(items);
+            if (text_) plc_.vertex_lines.resize(items);
+        };
+        read_items(element, make_room, [&](TextScanner& in, std::size_t item, TextPrecision& precision) {
             std::array<double, 4> c{};
             for (std::size_t i = 0; i < axis_of.size(); ++i) {
                 if (axis_of[i] == kNoAxis)
-                    pass_property(element, element.properties[i]);
+                    pass_property(in, item, element, element.properties[i]);
                 else
-                    c[axis_of[i]] = read_coordinate(element, element.properties[i].type);
+                    c[axis_of[i]] = read_coordinate(in, item, element, element.properties[i].type, precision);
             }
-            if (text_) plc_.vertex_lines.push_back(in_.line32());
-            plc_.vertices.push_back({c[0], c[1], c[2]});
-        }
+            if (text_) plc_.vertex_lines[item] = in.line32();
+            plc_.vertices[item] = {c[0], c[1], c[2]};
+        });
     }
 
     void read_faces(const Element& element) {
         const std::size_t list = *indices_of(element);
         plc_.facets.reserve(element.count);
-        for (item_ = 0; item_ < element.count; ++item_)
+        const auto make_room = [&](std::size_t items) {
+            plc_.facets.resize(items);
+            if (text_) plc_.facet_lines.resize(items);
+        };
+        read_items(element, make_room, [&](TextScanner& in, std::size_t item, TextPrecision&) {
             for (std::size_t i = 0; i < element.properties.size(); ++i) {
                 const Property& property = element.properties[i];
                 if (i != list) {
-                    pass_property(element, property);
+                    pass_property(in, item, element, property);
                     continue;
                 }
-                const std::size_t corners = read_length(element, property);
+                const std::size_t corners = read_length(in, item, element, property);
                 std::vector<std::uint32_t> polygon(corners);
-                for (std::uint32_t& corner : polygon) corner = read_corner(element, property.type);
-                if (text_) plc_.facet_lines.push_back(in_.line32());
-                add_polygon(plc_, std::move(polygon), 0);
+                for (std::uint32_t& corner : polygon) corner = read_corner(in, item, element, property.type);
+                if (text_) plc_.facet_lines[item] = in.line32();
+                plc_.facets[item] = polygon_facet(std::move(polygon), 0);
             }
+        });
     }
 
-    double read_coordinate(const Element& element, Type type) {
+    double read_coordinate(TextScanner& in, std::size_t item, const Element& element, Type type, TextPrecision& precision) {
         if (text_) {
-            const std::string_view token = in_.next();
-            const double value = in_.to_real(token, "a coordinate");
-            precision_.note(token, value);
+            const std::string_view token = in.next();
+            const double value = in.to_real(token, "a coordinate");
+            precision.note(token, value);
             return value;
         }
-        const double value = read_binary_real(element, type);
-        if (!std::isfinite(value)) fail_binary(element, fmt::format("coordinate {} is not finite", value));
+        const double value = read_binary_real(item, element, type);
+        if (!std::isfinite(value)) fail_binary(item, element, fmt::format("coordinate {} is not finite", value));
         return value;
     }
 
-    std::uint32_t read_corner(const Element& element, Type type) {
-        const std::int64_t number = text_ ? in_.integer("a vertex number") : read_binary_integer(element, type);
-        if (number < 0 || number > static_cast<std::int64_t>(kMostVertices)) fail_corner(number);
+    std::uint32_t read_corner(TextScanner& in, std::size_t item, const Element& element, Type type) {
+        const std::int64_t number = text_ ? in.integer("a vertex number") : read_binary_integer(item, element, type);
+        if (number < 0 || number > static_cast<std::int64_t>(kMostVertices)) fail_corner(in, item, number);
         return static_cast<std::uint32_t>(number);
     }
 
@@ -275,65 +297,65 @@ private:
     [[nodiscard]] std::string corner_message(std::int64_t number, std::size_t face) const {
         return fmt::format("face {} uses vertex {}, which does not exist ({} vertices, counted from 0)", face, number, plc_.vertices.size());
     }
-    [[noreturn]] void fail_corner(std::int64_t number) const {
-        if (text_) in_.fail(corner_message(number, item_));
-        fail_at_byte(source_, byte_, corner_message(number, item_));
+    [[noreturn]] void fail_corner(const TextScanner& in, std::size_t item, std::int64_t number) const {
+        if (text_) in.fail(corner_message(number, item));
+        fail_at_byte(source_, byte_, corner_message(number, item));
     }
-    [[noreturn]] void fail_binary(const Element& element, const std::string& what) const {
-        fail_at_byte(source_, byte_, fmt::format("{} {}: {}", element.name, item_, what));
+    [[noreturn]] void fail_binary(std::size_t item, const Element& element, const std::string& what) const {
+        fail_at_byte(source_, byte_, fmt::format("{} {}: {}", element.name, item, what));
     }
 
-    std::size_t read_length(const Element& element, const Property& property) {
-        if (text_) return in_.count("the length of a list", 2);
-        const std::int64_t length = read_binary_integer(element, *property.count_type);
-        if (length < 0) fail_binary(element, fmt::format("list '{}' has the length {}", property.name, length));
+    std::size_t read_length(TextScanner& in, std::size_t item, const Element& element, const Property& property) {
+        if (text_) return in.count("the length of a list", 2);
+        const std::int64_t length = read_binary_integer(item, element, *property.count_type);
+        if (length < 0) fail_binary(item, element, fmt::format("list '{}' has the length {}", property.name, length));
         if (static_cast<std::uint64_t>(length) > (source_.bytes.size() - byte_) / size_of(property.type))
-            fail_binary(element, fmt::format("list '{}' has {} items, more than the file has bytes for", property.name, length));
+            fail_binary(item, element, fmt::format("list '{}' has {} items, more than the file has bytes for", property.name, length));
         return static_cast<std::size_t>(length);
     }
 
-    void pass_property(const Element& element, const Property& property) {
-        const std::size_t values = property.count_type ? read_length(element, property) : 1;
+    void pass_property(TextScanner& in, std::size_t item, const Element& element, const Property& property) {
+        const std::size_t values = property.count_type ? read_length(in, item, element, property) : 1;
         if (text_) {
             // Properties that are not used may well be nan; they only have to be there.
             for (std::size_t i = 0; i < values; ++i)
-                if (in_.next().empty()) in_.fail_expected({}, fmt::format("'{}' of {} {}", property.name, element.name, item_).c_str());
+                if (in.next().empty()) in.fail_expected({}, fmt::format("'{}' of {} {}", property.name, element.name, item).c_str());
             return;
         }
-        need_bytes(element, values * size_of(property.type));
+        need_bytes(item, element, values * size_of(property.type));
         byte_ += values * size_of(property.type);
     }
 
-    void need_bytes(const Element& element, std::size_t bytes) const {
-        if (source_.bytes.size() - byte_ < bytes) fail_binary(element, "the file ends");
+    void need_bytes(std::size_t item, const Element& element, std::size_t bytes) const {
+        if (source_.bytes.size() - byte_ < bytes) fail_binary(item, element, "the file ends");
     }
 
     template <class T>
-    T take(const Element& element) {
-        need_bytes(element, sizeof(T));
+    T take(std::size_t item, const Element& element) {
+        need_bytes(item, element, sizeof(T));
         return load<T>(source_.bytes, std::exchange(byte_, byte_ + sizeof(T)), order_);
     }
 
-    double read_binary_real(const Element& element, Type type) {
-        if (type == Type::float32) return static_cast<double>(take<float>(element));
-        if (type == Type::float64) return take<double>(element);
-        return static_cast<double>(read_binary_integer(element, type));
+    double read_binary_real(std::size_t item, const Element& element, Type type) {
+        if (type == Type::float32) return static_cast<double>(take<float>(item, element));
+        if (type == Type::float64) return take<double>(item, element);
+        return static_cast<double>(read_binary_integer(item, element, type));
     }
 
-    std::int64_t read_binary_integer(const Element& element, Type type) {
+    std::int64_t read_binary_integer(std::size_t item, const Element& element, Type type) {
         switch (type) {
-            case Type::int8: return take<std::int8_t>(element);
-            case Type::uint8: return take<std::uint8_t>(element);
-            case Type::int16: return take<std::int16_t>(element);
-            case Type::uint16: return take<std::uint16_t>(element);
-            case Type::int32: return take<std::int32_t>(element);
-            case Type::uint32: return take<std::uint32_t>(element);
-            case Type::int64: return take<std::int64_t>(element);
-            case Type::uint64: return static_cast<std::int64_t>(take<std::uint64_t>(element) & 0x7fffffffffffffffULL);
+            case Type::int8: return take<std::int8_t>(item, element);
+            case Type::uint8: return take<std::uint8_t>(item, element);
+            case Type::int16: return take<std::int16_t>(item, element);
+            case Type::uint16: return take<std::uint16_t>(item, element);
+            case Type::int32: return take<std::int32_t>(item, element);
+            case Type::uint32: return take<std::uint32_t>(item, element);
+            case Type::int64: return take<std::int64_t>(item, element);
+            case Type::uint64: return static_cast<std::int64_t>(take<std::uint64_t>(item, element) & 0x7fffffffffffffffULL);
             case Type::float32:
             case Type::float64: break;
         }
-        fail_binary(element, "a real stands where an integer is needed");
+        fail_binary(item, element, "a real stands where an integer is needed");
     }
 
     void check_end() {
@@ -362,7 +384,6 @@ private:
     bool text_ = false, float32_ = false;
     std::endian order_ = std::endian::little;
     std::size_t byte_ = 0;  // cursor of binary data
-    std::size_t item_ = 0;  // element being read, from 0
 };
 
 }  // namespace

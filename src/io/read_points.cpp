@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Point sets: TetGen's .node, and .xyz (three coordinates a line, further columns passed over; an optional first line with the
 // number of points alone, which some programs write).
+#include <cstddef>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,8 +12,17 @@
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
 #include "io/tetgen_nodes.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
+namespace {
+
+struct Points {
+    std::vector<Vec3> points;
+    void join(const Points& later) { points.insert(points.end(), later.points.begin(), later.points.end()); }
+};
+
+}  // namespace
 
 std::vector<Vec3> read_node_points(const SourceFile& source) {
     TextScanner in(source, kTetgenSyntax);
@@ -23,31 +35,33 @@ std::vector<Vec3> read_node_points(const SourceFile& source) {
 
 std::vector<Vec3> read_xyz_points(const SourceFile& source) {
     TextScanner in(source, kTetgenSyntax);
-    std::vector<Vec3> points;
-    bool first = true;
-    std::size_t stated = 0;
-    bool is_stated = false;
-    for (std::string_view token = in.next(); !token.empty(); token = in.next()) {
-        if (std::exchange(first, false) && in.at_end_of_line()) {
-            constexpr std::size_t kLeastPointBytes = 6;  // "0 0 0\n"
-            stated = in.to_count(token, "the number of points", kLeastPointBytes);
-            is_stated = true;
-            points.reserve(stated);
-            continue;
-        }
-        Vec3 point;
-        point.x = in.to_real(token, "a coordinate");
-        point.y = in.to_real(in.next_on_line(), "a coordinate");
-        point.z = in.to_real(in.next_on_line(), "a coordinate");
-        if (points.size() >= kMostVertices) in.fail("more points than 32-bit numbers hold");
-        points.push_back(point);
-        in.skip_line();
+    Points read;
+    std::optional<std::size_t> stated;
+    TextScanner ahead = in;
+    if (const std::string_view token = ahead.next(); !token.empty() && ahead.at_end_of_line()) {
+        constexpr std::size_t kLeastPointBytes = 6;  // "0 0 0\n"
+        in.move_to(ahead.place());
+        stated = in.to_count(token, "the number of points", kLeastPointBytes);
+        read.points.reserve(*stated);
     }
-    if (!is_stated && points.empty()) in.fail("the file has no points");
-    if (is_stated && points.size() != stated)
-        in.fail("the file has " + std::to_string(points.size()) + " points, but its first line states " + std::to_string(stated));
+    read_rows_while(in, std::numeric_limits<std::size_t>::max(), read, [](std::size_t) {}, [](TextScanner& row, std::size_t i, Points& to) {
+        const std::string_view token = row.next();
+        if (token.empty()) return false;
+        Vec3 point;
+        point.x = row.to_real(token, "a coordinate");
+        point.y = row.to_real(row.next_on_line(), "a coordinate");
+        point.z = row.to_real(row.next_on_line(), "a coordinate");
+        if (i >= kMostVertices) row.fail("more points than 32-bit numbers hold");
+        to.points.push_back(point);
+        row.skip_line();
+        return true;
+    });
+    std::vector<Vec3>& points = read.points;
+    if (!stated && points.empty()) in.fail("the file has no points");
+    if (stated && points.size() != *stated)
+        in.fail("the file has " + std::to_string(points.size()) + " points, but its first line states " + std::to_string(*stated));
     normalise_zeros(points);
-    return points;
+    return std::move(points);
 }
 
 }  // namespace wellmesh::io

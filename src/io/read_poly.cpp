@@ -3,14 +3,19 @@
 // parts mean none. Sizes of the points are read from a .mtr beside, if there is one. What follows the region part is passed over: such files carry notes there.
 // A facet that consists of two-vertex polygons alone has no area: it is read as segments with the facet's marker.
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
 #include "io/tetgen_nodes.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
 namespace {
@@ -39,7 +44,7 @@ public:
         normalise_zeros(plc_.vertices);
         std::filesystem::path sizes = in_.source().path;
         sizes.replace_extension(".mtr");
-        if (std::filesystem::exists(sizes)) plc_.vertex_sizes = read_mtr(read_source(sizes), plc_.vertices.size());
+        if (std::filesystem::exists(sizes)) plc_.vertex_sizes = read_mtr(read_source(sizes, in_.source().threads), plc_.vertices.size());
         return std::move(plc_);
     }
 
@@ -49,7 +54,7 @@ private:
         if (!nodes.points.empty()) return nodes;
         std::filesystem::path beside = source.path;
         beside.replace_extension(".node");
-        const SourceFile node_file = read_source(beside);
+        const SourceFile node_file = read_source(beside, source.threads);
         TextScanner node_scanner(node_file, kTetgenSyntax);
         nodes = read_node_list(node_scanner, precision_);
         if (!node_scanner.at_end()) node_scanner.fail_expected(node_scanner.next(), "nothing after the points");
@@ -63,59 +68,69 @@ private:
         in_.skip_line();
         plc_.facets.reserve(facets);
         plc_.facet_lines.reserve(facets);
-        for (std::size_t f = 0; f < facets; ++f) {
-            PlcFacet& facet = plc_.facets.emplace_back();
+        const auto make_room = [&](std::size_t rows) {
+            plc_.facets.resize(rows);
+            plc_.facet_lines.resize(rows);
+        };
+        NoTally none;
+        read_rows(in_, facets, none, make_room, [&](TextScanner& in, std::size_t f, NoTally&) {
             if (smesh_)
-                read_smesh_facet(facet);
+                std::tie(plc_.facets[f], plc_.facet_lines[f]) = read_smesh_facet(in);
             else
-                read_poly_facet(facet);
-        }
+                std::tie(plc_.facets[f], plc_.facet_lines[f]) = read_poly_facet(in);
+        });
     }
 
-    void read_smesh_facet(PlcFacet& facet) {
-        facet.polygons.push_back(read_polygon(&plc_.facet_lines));
-        if (has_markers_ && !in_.at_end_of_line()) facet.marker = in_.to_reference(in_.next_on_line(), "a boundary marker");
+    /// @return with the line that it begins on
+    [[nodiscard]] std::pair<PlcFacet, std::uint32_t> read_smesh_facet(TextScanner& in) const {
+        PlcFacet facet;
+        std::uint32_t line = 0;
+        facet.polygons.push_back(read_polygon(in, &line));
+        if (has_markers_ && !in.at_end_of_line()) facet.marker = in.to_reference(in.next_on_line(), "a boundary marker");
         // A file without markers may have that column all the same, as TetGen allows; more than it is a wrong count.
-        if (!has_markers_ && !in_.at_end_of_line()) (void)in_.to_real(in_.next_on_line(), "a boundary marker");
-        expect_line_end("the polygon");
+        if (!has_markers_ && !in.at_end_of_line()) (void)in.to_real(in.next_on_line(), "a boundary marker");
+        expect_line_end(in, "the polygon");
+        return {std::move(facet), line};
     }
 
-    void read_poly_facet(PlcFacet& facet) {
-        const std::size_t polygons = in_.count("the number of polygons of a facet", kLeastRecordBytes);
-        plc_.facet_lines.push_back(in_.line32());
+    [[nodiscard]] std::pair<PlcFacet, std::uint32_t> read_poly_facet(TextScanner& in) const {
+        PlcFacet facet;
+        const std::size_t polygons = in.count("the number of polygons of a facet", kLeastRecordBytes);
+        const std::uint32_t line = in.line32();
         std::size_t holes = 0;
-        if (!in_.at_end_of_line()) holes = in_.to_count(in_.next_on_line(), "the number of holes of a facet", kLeastSeedBytes);
-        if (!in_.at_end_of_line()) {
-            const std::int32_t marker = in_.to_reference(in_.next_on_line(), "a boundary marker");
+        if (!in.at_end_of_line()) holes = in.to_count(in.next_on_line(), "the number of holes of a facet", kLeastSeedBytes);
+        if (!in.at_end_of_line()) {
+            const std::int32_t marker = in.to_reference(in.next_on_line(), "a boundary marker");
             if (has_markers_) facet.marker = marker;
         }
-        expect_line_end("the facet's counts and marker");
+        expect_line_end(in, "the facet's counts and marker");
         facet.polygons.reserve(polygons);
         for (std::size_t p = 0; p < polygons; ++p) {
-            facet.polygons.push_back(read_polygon(nullptr));
-            expect_line_end("the polygon");
+            facet.polygons.push_back(read_polygon(in, nullptr));
+            expect_line_end(in, "the polygon");
         }
         facet.holes.reserve(holes);
-        for (std::size_t h = 0; h < holes; ++h) facet.holes.push_back(read_numbered_seed());
+        for (std::size_t h = 0; h < holes; ++h) facet.holes.push_back(read_numbered_seed(in));
+        return {std::move(facet), line};
     }
 
-    /// Corners may continue over lines. @param lines  where to note the line it begins on; may be null
-    std::vector<std::uint32_t> read_polygon(std::vector<std::uint32_t>* lines) {
-        const std::size_t corners = in_.count("the number of vertices of a polygon", kLeastRecordBytes);
-        if (lines != nullptr) lines->push_back(in_.line32());
+    /// Corners may continue over lines. @param line  where to note the one it begins on; may be null
+    std::vector<std::uint32_t> read_polygon(TextScanner& in, std::uint32_t* line) const {
+        const std::size_t corners = in.count("the number of vertices of a polygon", kLeastRecordBytes);
+        if (line != nullptr) *line = in.line32();
         std::vector<std::uint32_t> polygon(corners);
         for (std::uint32_t& corner : polygon) {
-            const std::string_view token = in_.next();
+            const std::string_view token = in.next();
             if (numbering_.sequential())
-                corner = vertex_index(in_, in_.to_integer(token, "a vertex number"), numbering_.first(), numbering_.size());
+                corner = vertex_index(in, in.to_integer(token, "a vertex number"), numbering_.first(), numbering_.size());
             else
-                corner = vertex_number(in_, token);
+                corner = vertex_number(in, token);
         }
         return polygon;
     }
 
-    void expect_line_end(const char* what) {
-        if (!in_.at_end_of_line()) in_.fail_expected(in_.next_on_line(), fmt::format("the line to end after {}", what).c_str());
+    static void expect_line_end(TextScanner& in, const char* what) {
+        if (!in.at_end_of_line()) in.fail_expected(in.next_on_line(), fmt::format("the line to end after {}", what).c_str());
     }
 
     /// The file's numbers to indices: as the list states them if all used ones exist, else as TetGen counts.
@@ -164,10 +179,9 @@ private:
         plc_.facet_lines.resize(kept);
     }
 
-    Vec3 read_numbered_seed() {
-        (void)in_.integer("the number of a hole or region");
-        const Vec3 seed = read_seed(in_);
-        return seed;
+    static Vec3 read_numbered_seed(TextScanner& in) {
+        (void)in.integer("the number of a hole or region");
+        return read_seed(in);
     }
 
     void read_holes() {
@@ -175,7 +189,7 @@ private:
         plc_.hole_seeds.reserve(holes);
         in_.skip_line();
         for (std::size_t h = 0; h < holes; ++h) {
-            plc_.hole_seeds.push_back(read_numbered_seed());
+            plc_.hole_seeds.push_back(read_numbered_seed(in_));
             in_.skip_line();
         }
     }
@@ -186,7 +200,7 @@ private:
         in_.skip_line();
         for (std::size_t r = 0; r < regions; ++r) {
             RegionSeed seed;
-            seed.point = read_numbered_seed();
+            seed.point = read_numbered_seed(in_);
             seed.id = in_.to_reference(in_.next_on_line(), "an integer region attribute");
             if (!in_.at_end_of_line()) seed.max_volume = in_.to_real(in_.next_on_line(), "a volume bound");
             plc_.region_seeds.push_back(seed);

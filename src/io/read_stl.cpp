@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,6 +19,7 @@
 #include "io/mixed_mesh.hpp"
 #include "io/plc_building.hpp"
 #include "io/readers.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
 namespace {
@@ -24,32 +27,50 @@ namespace {
 constexpr std::size_t kHeaderBytes = 84;    // 80 of text, 4 of count
 constexpr std::size_t kTriangleBytes = 50;  // 12 floats, 2 bytes of attribute
 
+/// Numbers for points, in the order in which they come first; equal ones have one. A table of numbers alone: in the nodes of std::unordered_map look-ups took
+/// most of the time that reading did.
 class VertexMerger {
 public:
     explicit VertexMerger(std::vector<Vec3>& vertices) : vertices_(vertices) {}
-    void reserve(std::size_t n) { numbers_.reserve(n); }
+    /// Makes room for `n` different ones.
+    void reserve(std::size_t n) {
+        if (const std::size_t size = std::bit_ceil(2 * n); size > slots_.size()) rehash(size);
+    }
     std::uint32_t number_of(Vec3 p) {
         p = {p.x + 0.0, p.y + 0.0, p.z + 0.0};  // -0.0 becomes +0.0
-        const auto [at, is_new] = numbers_.try_emplace(p, static_cast<std::uint32_t>(vertices_.size()));
-        if (is_new && vertices_.size() >= kMostVertices)
-            throw MeshError(ErrorCode::bad_input, Stage::read, "more vertices than 32-bit numbers hold");
-        if (is_new) vertices_.push_back(p);
-        return at->second;
+        if (2 * vertices_.size() >= slots_.size()) rehash(std::max<std::size_t>(2 * slots_.size(), 16));
+        std::uint32_t& slot = slot_of(p);
+        if (slot != kFree) return slot;
+        if (vertices_.size() >= kMostVertices) throw MeshError(ErrorCode::bad_input, Stage::read, "more vertices than 32-bit numbers hold");
+        slot = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.push_back(p);
+        return slot;
     }
 
 private:
-    struct Hash {
-        std::size_t operator()(const Vec3& p) const noexcept {
-            std::uint64_t h = 0;
-            for (const double c : {p.x, p.y, p.z}) {
-                h = (h ^ std::bit_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15ULL;  // golden ratio, odd
-                h ^= h >> 32;
-            }
-            return h;
+    static constexpr std::uint32_t kFree = 0xffffffff;
+
+    static std::size_t hash(const Vec3& p) noexcept {
+        std::uint64_t h = 0;
+        for (const double c : {p.x, p.y, p.z}) {
+            h = (h ^ std::bit_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15ULL;  // golden ratio, odd
+            h ^= h >> 32;
         }
-    };
+        return h;
+    }
+    /// The one that holds the point's number, or the free one where it belongs.
+    std::uint32_t& slot_of(const Vec3& p) {
+        std::size_t i = hash(p) & (slots_.size() - 1);
+        while (slots_[i] != kFree && !(vertices_[slots_[i]] == p)) i = (i + 1) & (slots_.size() - 1);
+        return slots_[i];
+    }
+    void rehash(std::size_t size) {
+        slots_.assign(size, kFree);
+        for (std::size_t v = 0; v < vertices_.size(); ++v) slot_of(vertices_[v]) = static_cast<std::uint32_t>(v);
+    }
+
     std::vector<Vec3>& vertices_;
-    std::unordered_map<Vec3, std::uint32_t, Hash> numbers_;  // only looked up: its order never shows
+    std::vector<std::uint32_t> slots_;  // a power of two of them, half of them free at least
 };
 
 std::string lower(std::string_view word) {
@@ -68,20 +89,28 @@ void expect_word(TextScanner& in, const char* word) {
     if (!is_word(token, word)) in.fail_expected(token, fmt::format("'{}'", word).c_str());
 }
 
+/// Facets as they stand in the file: points that are equal have yet to become one vertex.
+struct StlFacets {
+    std::vector<Vec3> points;
+    std::vector<std::uint32_t> point_lines, facet_lines;
+    std::vector<std::size_t> ends;  // of each facet's points
+    TextPrecision precision;
+};
+
 class TextStl {
 public:
     explicit TextStl(const SourceFile& source)
         : in_(source, {.hash_comments = false}), plc_(make_surface(source)), merger_(plc_.vertices) {}
 
     Plc read() {
-        std::int32_t solids = 0;
         for (std::string_view token = in_.next(); !token.empty(); token = in_.next()) {
-            if (!is_word(token, "solid")) in_.fail_expected(token, solids == 0 ? "'solid'" : "'solid' or the end of the file");
+            if (!is_word(token, "solid")) in_.fail_expected(token, solids_ == 0 ? "'solid'" : "'solid' or the end of the file");
             const std::string_view name = in_.rest_of_line();  // anything
-            read_solid(++solids);
-            if (!name.empty()) plc_.names.of_dimension[2].emplace(solids, name);
+            ++solids_;
+            read_solid();
+            if (!name.empty()) plc_.names.of_dimension[2].emplace(solids_, name);
         }
-        if (!resolve_generated_names(plc_) && solids == 1) {
+        if (!resolve_generated_names(plc_) && solids_ == 1) {
             for (PlcFacet& facet : plc_.facets) facet.marker = 0;
             plc_.names = {};
         }
@@ -90,44 +119,76 @@ public:
     }
 
 private:
-    void read_solid(std::int32_t marker) {
-        bool after_loop = false;
-        while (true) {
+    /// Tally that merges the vertices of what has been joined to it.
+    struct Facets {
+        TextStl* reader = nullptr;
+        StlFacets rows{};
+        void join(Facets&& later) { reader->merge(later.rows); }
+    };
+
+    void read_solid() {
+        constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+        Facets facets{this};
+        read_rows_while(in_, kAll, facets, [](std::size_t) {}, [](TextScanner& in, std::size_t i, Facets& to) {
+            const TextScanner::Place begin = in.place();
             // Some writers leave out 'endfacet', and some glue the name to 'endsolid'.
-            std::string_view token = in_.next();
-            if (after_loop && is_word(token, "endfacet")) token = in_.next();
-            if (lower(token.substr(0, 8)) == "endsolid") break;
-            if (!is_word(token, "facet")) in_.fail_expected(token, after_loop ? "'endfacet', 'facet' or 'endsolid'" : "'facet' or 'endsolid'");
-            read_facet(marker);
-            after_loop = true;
-        }
+            std::string_view token = in.next();
+            if (i > 0 && is_word(token, "endfacet")) token = in.next();
+            if (lower(token.substr(0, 8)) == "endsolid") {
+                in.move_to(begin);
+                return false;
+            }
+            if (!is_word(token, "facet")) in.fail_expected(token, i > 0 ? "'endfacet', 'facet' or 'endsolid'" : "'facet' or 'endsolid'");
+            read_facet(in, to.rows);
+            if (to.reader != nullptr) to.reader->merge(to.rows);
+            return true;
+        });
+        if (is_word(in_.next(), "endfacet")) (void)in_.next();
         in_.skip_line();
     }
 
-    void read_facet(std::int32_t marker) {
-        plc_.facet_lines.push_back(in_.line32());
-        expect_word(in_, "normal");
+    static void read_facet(TextScanner& in, StlFacets& to) {
+        to.facet_lines.push_back(in.line32());
+        expect_word(in, "normal");
         for (int i = 0; i < 3; ++i)
-            if (in_.next().empty()) in_.fail_expected({}, "a normal");
-        expect_word(in_, "outer");
-        expect_word(in_, "loop");
-        std::vector<std::uint32_t> polygon;
-        polygon.reserve(3);
+            if (in.next().empty()) in.fail_expected({}, "a normal");
+        expect_word(in, "outer");
+        expect_word(in, "loop");
         while (true) {
-            const std::string_view token = in_.next();
+            const std::string_view token = in.next();
             if (is_word(token, "endloop")) break;
-            if (!is_word(token, "vertex")) in_.fail_expected(token, "'vertex' or 'endloop'");
-            const Vec3 point = read_point(in_, precision_);
-            polygon.push_back(merger_.number_of(point));
-            if (plc_.vertex_lines.size() < plc_.vertices.size()) plc_.vertex_lines.push_back(in_.line32());
+            if (!is_word(token, "vertex")) in.fail_expected(token, "'vertex' or 'endloop'");
+            to.points.push_back(read_point(in, to.precision));
+            to.point_lines.push_back(in.line32());
         }
-        add_polygon(plc_, std::move(polygon), marker);
+        to.ends.push_back(to.points.size());
+    }
+
+    /// Takes the facets over.
+    void merge(StlFacets& rows) {
+        std::size_t p = 0;
+        for (std::size_t f = 0; f < rows.ends.size(); ++f) {
+            std::vector<std::uint32_t> polygon;
+            polygon.reserve(rows.ends[f] - p);
+            for (; p < rows.ends[f]; ++p) {
+                polygon.push_back(merger_.number_of(rows.points[p]));
+                if (plc_.vertex_lines.size() < plc_.vertices.size()) plc_.vertex_lines.push_back(rows.point_lines[p]);
+            }
+            plc_.facet_lines.push_back(rows.facet_lines[f]);
+            add_polygon(plc_, std::move(polygon), solids_);
+        }
+        precision_.join(rows.precision);
+        rows.points.clear();
+        rows.point_lines.clear();
+        rows.facet_lines.clear();
+        rows.ends.clear();
     }
 
     TextScanner in_;
     TextPrecision precision_;
     Plc plc_;
     VertexMerger merger_;
+    std::int32_t solids_ = 0;
 };
 
 Plc read_binary(const SourceFile& source, std::size_t triangles) {

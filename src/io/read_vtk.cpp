@@ -301,7 +301,7 @@ TetMesh read_vtu_mesh(const SourceFile& source) {
     MixedMesh mesh = read_vtu(source, false);
     std::filesystem::path beside = source.path;
     beside.replace_extension(".boundary.vtu");
-    if (std::filesystem::exists(beside)) add_boundary(mesh, read_source(beside));
+    if (std::filesystem::exists(beside)) add_boundary(mesh, read_source(beside, source.threads));
     return to_tet_mesh(std::move(mesh), source);
 }
 

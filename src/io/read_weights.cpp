@@ -8,6 +8,7 @@
 
 #include "io/readers.hpp"
 #include "io/tetgen_nodes.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
 
@@ -24,7 +25,9 @@ std::vector<double> read_medit_weights(const SourceFile& source) {
     if (const std::int64_t type = in.integer("the type of the field"); type != 1) in.fail(fmt::format("weights are scalars (type 1), not of type {}", type));
     std::vector<double> weights;
     weights.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) weights.push_back(in.real("a weight"));
+    NoTally none;
+    read_rows(in, count, none, [&](std::size_t rows) { weights.resize(rows); },
+              [&](TextScanner& row, std::size_t i, NoTally&) { weights[i] = row.real("a weight"); });
     if (const std::string_view word = in.next(); !word.empty() && word != "End") in.fail_expected(word, "'End' after the weights");
     return weights;
 }

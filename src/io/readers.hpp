@@ -31,13 +31,13 @@ namespace wellmesh::io {
 [[nodiscard]] bool has_medit_tetrahedra(const SourceFile& source);
 [[nodiscard]] TetMesh read_msh_mesh(const SourceFile& source);
 [[nodiscard]] TetMesh read_vtu_mesh(const SourceFile& source);  ///< with NAME.boundary.vtu, if it stands beside
-/// .node and .ele, and .face and .edge where they exist. @param path  the .node or the .ele file
-[[nodiscard]] TetMesh read_tetgen_mesh(const std::filesystem::path& path);
+/// .node and .ele, and .face and .edge where they exist. @param path  the .node or the .ele file. @param threads  as in SourceFile
+[[nodiscard]] TetMesh read_tetgen_mesh(const std::filesystem::path& path, unsigned threads);
 
 /// Sizes of a .mtr file. @param points  how many there must be
 [[nodiscard]] std::vector<double> read_mtr(const SourceFile& source, std::size_t points);
-/// .node, .ele and .mtr. @param path  any of the three
-[[nodiscard]] BackgroundMesh read_tetgen_background(const std::filesystem::path& path);
+/// .node, .ele and .mtr. @param path  any of the three. @param threads  as in SourceFile
+[[nodiscard]] BackgroundMesh read_tetgen_background(const std::filesystem::path& path, unsigned threads);
 /// @param as_surface  volume cells other than tetrahedra are passed over; else they are errors
 [[nodiscard]] MixedMesh read_msh(const SourceFile& source, bool as_surface);
 [[nodiscard]] MixedMesh read_vtu(const SourceFile& source, bool as_surface);

@@ -12,10 +12,13 @@
 
 #include <fmt/format.h>
 
+#include "core/huge_pages.hpp"
+
 namespace wellmesh::io {
 namespace {
 
 constexpr std::size_t kLongestQuote = 40;          // bytes of a token that a message repeats
+constexpr std::size_t kLargeFile = std::size_t{1} << 18;  // bytes; smaller ones are read before threads have started
 constexpr std::size_t kChunk = std::size_t{1} << 20;
 
 [[noreturn]] void cannot_read(const std::string& name, const std::string& why) {
@@ -40,8 +43,8 @@ private:
 
 }  // namespace
 
-SourceFile read_source(const std::filesystem::path& path) {
-    SourceFile source{path, path.string(), {}};
+SourceFile read_source(const std::filesystem::path& path, unsigned threads) {
+    SourceFile source{path, path.string(), {}, threads};
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.get() < 0) cannot_read(source.name, system_message(errno));
     struct stat status {};
@@ -52,7 +55,9 @@ SourceFile read_source(const std::filesystem::path& path) {
     std::string& bytes = source.bytes;
     std::size_t used = 0;
     // One byte more than the size, so that the read() that finds the end needs no further room.
-    bytes.resize(S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1 : kChunk);
+    bytes.reserve(S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1 : kChunk);
+    advise_huge_pages(bytes.data(), bytes.capacity());
+    bytes.resize(bytes.capacity());
     while (true) {
         if (used == bytes.size()) bytes.resize(bytes.size() + std::max(kChunk, bytes.size() / 2));
         const ssize_t got = ::read(file.get(), bytes.data() + used, bytes.size() - used);
@@ -63,6 +68,7 @@ SourceFile read_source(const std::filesystem::path& path) {
     }
     bytes.resize(used);
     if (bytes.empty()) fail_in_file(source, "the file is empty");
+    if (bytes.size() >= kLargeFile && threads != 1) source.workers = std::make_unique<Workers>(threads);
     return source;
 }
 

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
+#include "core/workers.hpp"
 #include "wellmesh/error.hpp"
 
 namespace wellmesh::io {
@@ -15,11 +17,13 @@ struct SourceFile {
     std::filesystem::path path;
     std::string name;   ///< as messages print it
     std::string bytes;
+    unsigned threads = 1;                ///< that read it and the files beside it; 0: as many as the machine has cores
+    std::unique_ptr<Workers> workers{};  ///< those threads; null in a small file or where there is but one
 };
 
 /// Reads a regular file (or a pipe, to its end) completely.
 /// @throws MeshError{cannot_read} naming the file: missing, a directory, a device, unreadable.
-[[nodiscard]] SourceFile read_source(const std::filesystem::path& path);
+[[nodiscard]] SourceFile read_source(const std::filesystem::path& path, unsigned threads);
 
 /// A token of the input as messages quote it: non-printing bytes escaped, long ones cut.
 [[nodiscard]] std::string quoted_token(std::string_view token);

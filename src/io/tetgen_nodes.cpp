@@ -5,6 +5,7 @@
 
 #include "io/number_parsing.hpp"
 #include "io/plc_building.hpp"
+#include "io/text_rows.hpp"
 
 namespace wellmesh::io {
 
@@ -25,24 +26,29 @@ NodeList read_node_list(TextScanner& in, TextPrecision& precision) {
     nodes.points.reserve(points);
     nodes.numbers.reserve(points);
     nodes.lines.reserve(points);
-    if (markers == 1) nodes.markers.reserve(points);
-    for (std::size_t i = 0; i < points; ++i) {
-        nodes.numbers.push_back(vertex_number(in, in.next()));
-        nodes.lines.push_back(in.line32());
-        Vec3 point;
+    const auto make_room = [&](std::size_t rows) {
+        nodes.points.resize(rows);
+        nodes.numbers.resize(rows);
+        nodes.lines.resize(rows);
+        if (attributes > 0) nodes.first_attributes.resize(rows);
+        if (markers == 1) nodes.markers.resize(rows);
+    };
+    read_rows(in, points, precision, make_room, [&](TextScanner& row, std::size_t i, TextPrecision& noted) {
+        nodes.numbers[i] = vertex_number(row, row.next());
+        nodes.lines[i] = row.line32();
+        Vec3& point = nodes.points[i];
         for (double* const coordinate : {&point.x, &point.y, &point.z}) {
-            const std::string_view token = in.next_on_line();
-            *coordinate = in.to_real(token, "a coordinate");
-            precision.note(token, *coordinate);
+            const std::string_view token = row.next_on_line();
+            *coordinate = row.to_real(token, "a coordinate");
+            noted.note(token, *coordinate);
         }
-        nodes.points.push_back(point);
         for (std::int64_t a = 0; a < attributes; ++a) {
-            const double attribute = in.to_real(in.next_on_line(), "an attribute");
-            if (a == 0) nodes.first_attributes.push_back(attribute);
+            const double attribute = row.to_real(row.next_on_line(), "an attribute");
+            if (a == 0) nodes.first_attributes[i] = attribute;
         }
-        if (markers == 1) nodes.markers.push_back(in.to_reference(in.next_on_line(), "a boundary marker"));
-        in.skip_line();
-    }
+        if (markers == 1) nodes.markers[i] = row.to_reference(row.next_on_line(), "a boundary marker");
+        row.skip_line();
+    });
     return nodes;
 }
 

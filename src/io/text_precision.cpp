@@ -108,6 +108,15 @@ void TextPrecision::note(double value) {
     note(std::string_view(text.data(), text.size()), value);
 }
 
+void TextPrecision::join(const TextPrecision& other) {
+    // Where note() returns early, what it leaves out can't change the outcome any more, here or there.
+    largest_ = std::max(largest_, other.largest_);
+    largest_inexact_ = std::max(largest_inexact_, other.largest_inexact_);
+    digits_ = std::max(digits_, other.digits_);
+    all_float32_ = all_float32_ && other.all_float32_;
+    full_float32_ = full_float32_ || other.full_float32_;
+}
+
 double TextPrecision::relative_rounding() const {
     if (all_float32_ && full_float32_) return kFloat32Rounding;
     if (digits_ <= kNominalDigits || digits_ >= kDoubleDigits || largest_inexact_ == 0) return 0;

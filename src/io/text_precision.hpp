@@ -26,6 +26,8 @@ public:
     void note(std::string_view token, double value);
     /// A coordinate of a binary file: its shortest text is what a program that lost digits would have written.
     void note(double value);
+    /// Adds what another one was told.
+    void join(const TextPrecision& other);
     [[nodiscard]] double relative_rounding() const;
 
 private:

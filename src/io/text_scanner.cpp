@@ -45,10 +45,10 @@ void TextScanner::skip_blanks() {
 std::string_view TextScanner::next_on_line() {
     skip_blanks();
     const char* const first = cursor_;
-    while (cursor_ != end_) {
-        const Class c = class_of(*cursor_);
-        if (c == Class::blank || c == Class::line_end || c == Class::comment) break;
-        if (c == Class::backslash && cursor_ + 1 != end_ && class_of(cursor_[1]) == Class::line_end) break;
+    while (true) {
+        while (cursor_ != end_ && class_of(*cursor_) == Class::token) ++cursor_;
+        if (cursor_ == end_ || class_of(*cursor_) != Class::backslash) break;
+        if (cursor_ + 1 != end_ && class_of(cursor_[1]) == Class::line_end) break;
         ++cursor_;
     }
     return {first, static_cast<std::size_t>(cursor_ - first)};
@@ -86,6 +86,42 @@ std::string_view TextScanner::rest_of_line() {
     while (first != last && class_of(*first) == Class::blank) ++first;
     while (first != last && class_of(last[-1]) == Class::blank) --last;
     return {first, static_cast<std::size_t>(last - first)};
+}
+
+std::vector<TextScanner> TextScanner::stretches(std::size_t bytes, std::size_t most) const {
+    std::vector<TextScanner> out;
+    for (const char* first = cursor_; first != end_ && out.size() < most;) {
+        TextScanner& stretch = out.emplace_back(*this);
+        stretch.cursor_ = first;
+        // Only LF is looked for: CR LF stays together, and a text without any LF is one stretch.
+        const std::string_view rest(first, static_cast<std::size_t>(end_ - first));
+        const std::size_t last = bytes < rest.size() ? rest.find('\n', bytes) : std::string_view::npos;
+        first = last == std::string_view::npos ? end_ : first + last + 1;
+        stretch.end_ = first;
+    }
+    return out;
+}
+
+TextScanner::Lines TextScanner::count_lines() const {
+    TextScanner ahead = *this;
+    Lines lines;
+    while (true) {
+        if (!ahead.at_end_of_line()) {
+            ++lines.with_tokens;
+            ahead.skip_line();
+        }
+        if (ahead.cursor_ == ahead.end_) break;
+        ahead.pass_line_end();
+    }
+    lines.ends = ahead.line_ - line_;
+    return lines;
+}
+
+std::size_t TextScanner::count_lines_since(Place from) const {
+    TextScanner until_here = *this;
+    until_here.end_ = cursor_;
+    until_here.move_to(from);
+    return until_here.count_lines().with_tokens;
 }
 
 std::uint32_t TextScanner::line32() const {

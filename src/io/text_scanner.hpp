@@ -5,7 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/source_file.hpp"
 
@@ -41,6 +43,33 @@ public:
     [[nodiscard]] std::uint32_t line32() const;                 ///< the same, saturated
     [[nodiscard]] std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - cursor_); }
     [[nodiscard]] const SourceFile& source() const { return source_; }
+
+    struct Place {
+        const char* byte;
+        std::uint64_t line;
+    };
+    [[nodiscard]] Place place() const { return {cursor_, line_}; }
+    /// @pre `to` is a place of the same text.
+    void move_to(Place to) {
+        cursor_ = to.byte;
+        line_ = to.line;
+    }
+
+    /// Scanners of the next stretches of the text, each of `bytes` or more, the last one perhaps fewer; all but the first begin with a line. No more than `most`.
+    [[nodiscard]] std::vector<TextScanner> stretches(std::size_t bytes, std::size_t most) const;
+    struct Lines {
+        std::size_t with_tokens = 0;
+        std::uint64_t ends = 0;
+    };
+    /// How many lines there are from here on. Doesn't move.
+    [[nodiscard]] Lines count_lines() const;
+    /// How many lines with tokens there are from `from` to here.
+    [[nodiscard]] std::size_t count_lines_since(Place from) const;
+    /// Makes a stretch of `whole` end where that does. @param line  where it is
+    void widen_to(const TextScanner& whole, std::uint64_t line) {
+        end_ = whole.end_;
+        line_ = line;
+    }
 
     /// Next token as a finite real. `what` completes "expected ...". @throws MeshError{bad_input}
     double real(const char* what) { return to_real(next(), what); }

@@ -81,5 +81,31 @@ TEST(TextPrecision, BoundsWhatPrintingLoses) {
     EXPECT_GT(tested, 400);
 }
 
+// Each part of a list is of one kind; so joining has to bring together what decides each of the rules.
+TEST(TextPrecision, IsTheSameForPartsThatAreJoined) {
+    int rounded = 0;
+    for (std::uint64_t round = 0; round < 500; ++round) {
+        TextPrecision whole, joined;
+        for (std::uint64_t part = 0; part < 1 + round % 4; ++part) {
+            TextPrecision alone;
+            const std::uint64_t kind = mix64(round, 10 * part) % 5, digits = 3 + mix64(round, 10 * part + 1) % 8;
+            for (std::uint64_t i = 0; i < mix64(round, 10 * part + 2) % 4; ++i) {
+                const double value = 10 * unit_double(mix64(round, 10 * part + 3 + i));
+                const std::string text = kind == 0   ? fmt::format("{}", std::floor(value))
+                                         : kind == 1 ? fmt::format("{:.30g}", static_cast<double>(static_cast<float>(value)))
+                                         : kind == 2 ? fmt::format("{}", value)
+                                                     : fmt::format("{:.{}g}", value, digits);
+                const double read = parse_real(text).value;
+                whole.note(text, read);
+                alone.note(text, read);
+            }
+            joined.join(alone);
+        }
+        EXPECT_EQ(joined.relative_rounding(), whole.relative_rounding()) << round;
+        rounded += whole.relative_rounding() > 0 ? 1 : 0;
+    }
+    EXPECT_GT(rounded, 100);
+}
+
 }  // namespace
 }  // namespace wellmesh::io

@@ -91,5 +91,37 @@ TEST(TextScanner, ReferencesFitThirtyTwoBits) {
     expect_error(ErrorCode::bad_input, {"1.5"}, [&] { in.integer32("r"); });
 }
 
+TEST(TextScanner, StretchesAreTheText) {
+    for (const std::string end : {"\n", "\r\n", "\r"}) {
+        std::string text = "0";
+        for (int i = 1; i < 400; ++i) text += i % 7 == 0 ? end + " # none" + end + end : i % 3 == 0 ? end + std::to_string(i) : " " + std::to_string(i);
+        const SourceFile source = source_of(text);
+        std::vector<std::string> expected;
+        for (const Token& token : tokens(text)) expected.push_back(token.first);
+        for (const std::size_t bytes : {1U, 10U, 300U, 100000U}) {
+            std::vector<std::string> found;
+            std::uint64_t ends = 0;
+            std::size_t lines = 0;
+            for (TextScanner& stretch : TextScanner(source, {}).stretches(bytes, 100000)) {
+                const TextScanner::Lines counted = stretch.count_lines();
+                const std::uint64_t first = stretch.line();
+                std::uint64_t line = 0;
+                for (std::string_view t = stretch.next(); !t.empty(); t = stretch.next()) {
+                    found.emplace_back(t);
+                    lines += stretch.line() != line ? 1U : 0U;
+                    line = stretch.line();
+                }
+                EXPECT_EQ(stretch.line(), first + counted.ends);
+                ends += counted.ends;
+                lines -= counted.with_tokens;
+            }
+            EXPECT_EQ(found, expected);
+            EXPECT_EQ(ends, TextScanner(source, {}).count_lines().ends);
+            EXPECT_EQ(lines, 0U);  // as many as there were counted
+        }
+        EXPECT_EQ(TextScanner(source, {}).stretches(10, 3).size(), end == "\r" ? 1U : 3U);
+    }
+}
+
 }  // namespace
 }  // namespace wellmesh::io
