@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "conforming/conforming_mesh.hpp"
+#include "core/check.hpp"
 
 namespace wellmesh {
 
@@ -146,6 +147,7 @@ bool ConformingMesh::is_encroached_at(TetId t, const Vec3& p) const {
 std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<const Vec3> points, InsertionReason reason,
                                                     const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on,
                                                     std::vector<VertexId>& encroaching) {
+    WELLMESH_CHECK(Stage::refine, frames_.empty());
     const std::size_t first = tri_.vertex_count();
     tri_.reserve(first + points.size());
     info_.reserve(first + points.size() + points.size() / 8);
@@ -167,12 +169,13 @@ std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<
 }
 
 void ConformingMesh::insert_known(VertexId v, const Cavity& cavity, const Placement& where) {
-    info_[v.index()].carrier_id = where.carrier_id;
+    set_carrier_id(v, where.carrier_id);
     ++vertex_count_;
     commit(v, cavity, where);
 }
 
 void ConformingMesh::renumber_tets(Workers& workers) {
+    WELLMESH_CHECK(Stage::refine, frames_.empty());
     tri_.release_scratch();  // it would be for tetrahedra that are no more
     const Triangulation::Renumbering renumbering = tri_.renumber(workers);
     const std::vector<TetId>& old_of = renumbering.old_of;
