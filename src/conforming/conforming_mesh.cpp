@@ -64,6 +64,15 @@ void ConformingMesh::fit_arrays() {
     record_.resize(ahead, 0);
 }
 
+void ConformingMesh::release_all_but_tets() {
+    tri_.release_all_but_tets();
+    info_.release();
+    cell_.release();
+    record_.release();
+    records_.release();
+    for (std::vector<std::vector<VertexId>>* lists : {&on_facet_, &on_segment_}) lists->clear();
+}
+
 TetLabels& ConformingMesh::labels_for_writing(TetId t) {
     std::uint32_t& r = record_[t.index()];
     if (r != 0) {

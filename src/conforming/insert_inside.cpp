@@ -174,6 +174,20 @@ void ConformingMesh::insert_known(VertexId v, const Cavity& cavity, const Placem
     commit(v, cavity, where);
 }
 
+/// Records in the order of tetrahedra, and no others: bulk insertion leaves as many more as it found, or twice that.
+void ConformingMesh::pack_records() {
+    SharedArray<TetLabels> packed;
+    packed.reserve(records_.size() - free_records_.size());
+    packed.push_back(TetLabels{});
+    for (std::uint32_t& r : record_) {
+        if (r == 0) continue;
+        packed.push_back(records_[r]);
+        r = static_cast<std::uint32_t>(packed.size() - 1);
+    }
+    records_ = std::move(packed);
+    free_records_.clear();
+}
+
 void ConformingMesh::renumber_tets(Workers& workers) {
     WELLMESH_CHECK(Stage::refine, frames_.empty());
     tri_.release_scratch();  // it would be for tetrahedra that are no more
@@ -190,6 +204,7 @@ void ConformingMesh::renumber_tets(Workers& workers) {
     };
     take_along(cell_);
     take_along(record_);
+    pack_records();
     // Labels stand by corner: they follow their vertices.
     workers.for_ranges(old_of.size(), std::size_t{1} << 15, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {

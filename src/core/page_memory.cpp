@@ -15,6 +15,8 @@ namespace wellmesh {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
+/// What lies between the last element and the end of its page is held for nothing: of smaller arrays it would be more than an eighth.
+constexpr std::size_t kLeastHuge = 8 * kHugePage;
 
 /// Whole huge pages, so that one advice covers a mapping: pages of two mappings don't move together. What is never touched costs nothing.
 std::size_t whole_pages(std::size_t bytes) { return (bytes + kHugePage - 1) / kHugePage * kHugePage; }
@@ -30,18 +32,24 @@ void* take_pages(std::size_t bytes) {
     const std::size_t ahead = (kHugePage - reinterpret_cast<std::uintptr_t>(mapped) % kHugePage) % kHugePage;
     if (ahead > 0) (void)::munmap(begin, ahead);
     if (ahead < kHugePage) (void)::munmap(begin + ahead + wanted, kHugePage - ahead);
-    (void)::madvise(begin + ahead, wanted, MADV_HUGEPAGE);
+    if (wanted >= kLeastHuge) (void)::madvise(begin + ahead, wanted, MADV_HUGEPAGE);
     return begin + ahead;
 }
 
 void* grow_pages(void* pages, std::size_t bytes, std::size_t more_bytes) {
     const std::size_t before = whole_pages(bytes), wanted = whole_pages(more_bytes);
     if (wanted == before) return pages;
-    if (void* const same = ::mremap(pages, before, wanted, 0); same != MAP_FAILED) return same;
-    void* const place = take_pages(wanted);
-    if (void* const moved = ::mremap(pages, before, wanted, MREMAP_MAYMOVE | MREMAP_FIXED, place); moved != MAP_FAILED) return moved;
-    give_back_pages(place, wanted);
-    throw std::bad_alloc();
+    void* grown = ::mremap(pages, before, wanted, 0);
+    if (grown == MAP_FAILED) {
+        void* const place = take_pages(wanted);
+        grown = ::mremap(pages, before, wanted, MREMAP_MAYMOVE | MREMAP_FIXED, place);
+        if (grown == MAP_FAILED) {
+            give_back_pages(place, wanted);
+            throw std::bad_alloc();
+        }
+    }
+    if (wanted >= kLeastHuge && before < kLeastHuge) (void)::madvise(grown, wanted, MADV_HUGEPAGE);
+    return grown;
 }
 
 void give_back_pages(void* pages, std::size_t bytes) noexcept { (void)::munmap(pages, whole_pages(bytes)); }

@@ -191,6 +191,10 @@ public:
     Renumbering renumber(Workers& workers);
     /// Gives back memory that searches and changes need: the next one takes it again.
     void release_scratch() { mark_.release(); }
+    void release_all_but_tets() {
+        release_scratch();
+        vertices_.release();
+    }
     /// The same memory for another use: a number for each tetrahedron.
     [[nodiscard]] SharedArray<std::uint32_t> take_scratch() { return std::exchange(mark_, {}); }
 
