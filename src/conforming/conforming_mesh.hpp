@@ -168,6 +168,8 @@ public:
     void insert_known(VertexId v, const Cavity& cavity, const Placement& where);
     /// Ids of tetrahedra that depend on the mesh alone; all ids from before are void. @pre nothing is broken or forgotten, and there is no savepoint
     void renumber_tets(Workers& workers);
+    /// Leaves only as many records of labels as there are labels: work in zones and bulk insertion leave many times that. @pre there is no savepoint
+    void pack_records();
     /// Gives back everything but corners and neighbours of tetrahedra, of which alone may be asked from now on.
     void release_all_but_tets();
     /// Puts a removed vertex back, or elsewhere on its carrier: like insert, keeping id and info.
@@ -313,7 +315,6 @@ private:
     TetLabels& labels_for_writing(TetId t);
     void drop_labels(TetId t);
     void fit_arrays();
-    void pack_records();
     void note_carrier(VertexId v);
     class InsideObserver;
 

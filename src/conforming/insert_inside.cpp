@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bulk insertion inside cells, and numbering afterwards.
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "conforming/conforming_mesh.hpp"
 #include "core/check.hpp"
@@ -174,8 +176,8 @@ void ConformingMesh::insert_known(VertexId v, const Cavity& cavity, const Placem
     commit(v, cavity, where);
 }
 
-/// Records in the order of tetrahedra, and no others: bulk insertion leaves as many more as it found, or twice that.
 void ConformingMesh::pack_records() {
+    WELLMESH_CHECK(Stage::refine, frames_.empty());
     SharedArray<TetLabels> packed;
     packed.reserve(records_.size() - free_records_.size());
     packed.push_back(TetLabels{});
@@ -185,11 +187,11 @@ void ConformingMesh::pack_records() {
         r = static_cast<std::uint32_t>(packed.size() - 1);
     }
     records_ = std::move(packed);
-    free_records_.clear();
+    std::vector<std::uint32_t>().swap(free_records_);
 }
 
 void ConformingMesh::renumber_tets(Workers& workers) {
-    WELLMESH_CHECK(Stage::refine, frames_.empty());
+    pack_records();
     tri_.release_scratch();  // it would be for tetrahedra that are no more
     const Triangulation::Renumbering renumbering = tri_.renumber(workers);
     const std::vector<TetId>& old_of = renumbering.old_of;
@@ -204,7 +206,6 @@ void ConformingMesh::renumber_tets(Workers& workers) {
     };
     take_along(cell_);
     take_along(record_);
-    pack_records();
     // Labels stand by corner: they follow their vertices.
     workers.for_ranges(old_of.size(), std::size_t{1} << 15, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {

@@ -241,6 +241,7 @@ private:
         if (verdict == RunGuard::Verdict::go_on && !certified && !exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {
                 return_freed_memory();
+                mesh.pack_records();
                 const SliverOutcome outcome = remove_slivers(mesh, boundary, refiner, guard_, workers_, options_);
                 verdict = outcome.verdict;
                 result_.statistics.moved_vertices = outcome.moved_vertices;
