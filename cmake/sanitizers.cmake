@@ -13,3 +13,7 @@ elseif(WELLMESH_SANITIZE STREQUAL "thread")
 elseif(WELLMESH_SANITIZE)
   message(FATAL_ERROR "WELLMESH_SANITIZE is OFF, address or thread, not ${WELLMESH_SANITIZE}")
 endif()
+if(WELLMESH_SANITIZE)
+  # Sanitizers watch what the allocator hands out (src/core/page_memory.hpp).
+  add_compile_definitions(WELLMESH_SANITIZED)
+endif()

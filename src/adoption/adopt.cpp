@@ -254,7 +254,7 @@ void settle_regions(ConformingMesh& mesh) {
         mesh.triangulation().find_star(v, star);
         const auto finite = std::find_if(star.begin(), star.end(), [&](TetId t) { return mesh.tets().is_finite(t) && mesh.in_domain(t); });
         if (finite == star.end()) outside.push_back({EntityKind::vertex, 0, mesh.point(v)});
-        else mesh.info(v).carrier_id = mesh.cell(*finite).value();
+        else mesh.set_carrier_id(v, mesh.cell(*finite).value());
     }
     if (outside.empty()) return;
     const Vec3 p = *outside[0].where;

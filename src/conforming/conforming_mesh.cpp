@@ -80,15 +80,28 @@ void ConformingMesh::fit_arrays(Workers& workers) {
     });
 }
 
+void ConformingMesh::release_all_but_tets() {
+    tri_.release_all_but_tets();
+    info_.release();
+    cell_.release();
+    record_.release();
+    records_.release();
+    for (std::vector<std::vector<VertexId>>* lists : {&on_facet_, &on_segment_}) lists->clear();
+}
+
 TetLabels& ConformingMesh::labels_for_writing(TetId t) {
     std::uint32_t& r = record_[t.index()];
-    if (r == 0) {
+    if (r != 0) {
+        keep_record(r);
+    } else {
+        keep(t);
         if (free_records_.empty()) {
             r = static_cast<std::uint32_t>(records_.size());
             records_.push_back(TetLabels{});
         } else {
             r = free_records_.back();
             free_records_.pop_back();
+            keep_record(r);
             records_[r] = TetLabels{};
         }
     }
@@ -98,6 +111,7 @@ TetLabels& ConformingMesh::labels_for_writing(TetId t) {
 void ConformingMesh::drop_labels(TetId t) {
     std::uint32_t& r = record_[t.index()];
     if (r == 0) return;
+    keep(t);
     free_records_.push_back(r);
     r = 0;
 }
@@ -217,6 +231,7 @@ void ConformingMesh::relabel_facet(FacetId f, const std::vector<TetFace>& faces)
 }
 
 void ConformingMesh::forget_cell(TetId t) {
+    keep(t);
     cell_[t.index()] = tri_.tets().is_ghost(t) ? CellId{0} : unknown_cell();
     forgotten_.push_back(t);
 }

@@ -23,6 +23,7 @@
 #include "core/checkpoint.hpp"
 #include "core/ids.hpp"
 #include "core/shared_array.hpp"
+#include "core/undo_log.hpp"
 #include "delaunay/triangulation.hpp"
 #include "validation/valid_plc.hpp"
 #include "wellmesh/tet_mesh.hpp"
@@ -100,7 +101,10 @@ public:
     [[nodiscard]] const TetStore& tets() const { return tri_.tets(); }
     [[nodiscard]] const Vec3& point(VertexId v) const { return tri_.point(v); }
     [[nodiscard]] const VertexInfo& info(VertexId v) const { return info_[v.index()]; }
-    [[nodiscard]] VertexInfo& info(VertexId v) { return info_[v.index()]; }
+    void set_carrier_id(VertexId v, std::uint32_t id) {
+        keep(v);
+        info_[v.index()].carrier_id = id;
+    }
     [[nodiscard]] std::size_t vertex_slots() const { return info_.size(); }
     [[nodiscard]] std::size_t vertex_count() const { return vertex_count_; }
 
@@ -138,7 +142,10 @@ public:
     void label_face(TetFace tf, FacetId f);                ///< on both sides; an invalid f takes the label away
     /// Labels these faces as f's, and no others. Where that changes anything the cells on both sides become unknown.
     void relabel_facet(FacetId f, const std::vector<TetFace>& faces);
-    void set_cell(TetId t, CellId c) { cell_[t.index()] = c; }
+    void set_cell(TetId t, CellId c) {
+        keep(t);
+        cell_[t.index()] = c;
+    }
 
     // --- cells that a broken surface let leak: tetrahedra that were made next to it, or that its repair may have moved to the other side
     /// The cell of tetrahedra of which nothing is known; not in the domain.
@@ -149,7 +156,7 @@ public:
 
     /// Inserts cavity.point and notes its insertion length. Labels and cells follow; constraints that the point destroys without lying on them are noted as broken.
     VertexId insert(const Cavity& cavity, const Placement& where, const VertexInfo& info);
-    /// Adds vertices inside cells, all that encroach upon nothing, on all workers. All get numbers, in their order;
+    /// Adds vertices inside cells, all that encroach upon nothing, on all workers. All get numbers, in their order; @pre there is no savepoint
     /// those that did not go in are not inserted, insert_known() may still do it. Ids of tetrahedra depend on the number of workers. Insertion lengths are not noted.
     /// @param points  in biased_spatial_order(), none of them a vertex's  @param is_welcome  may there be a vertex in this cell? From any thread.
     /// @param may_go_on  asked now and then, from any thread
@@ -159,8 +166,13 @@ public:
                                         std::vector<VertexId>& encroaching);
     /// Inserts such a vertex. @param where  in a cell
     void insert_known(VertexId v, const Cavity& cavity, const Placement& where);
-    /// Ids of tetrahedra that depend on the mesh alone; all ids from before are void. @pre nothing is broken or forgotten
+    /// Ids of tetrahedra that depend on the mesh alone; all ids from before are void. @pre nothing is broken or forgotten, and there is no savepoint
     void renumber_tets(Workers& workers);
+    /// Leaves only as many records of labels as there are labels, in the order of their tetrahedra: work in zones and bulk insertion leave many times that, anyhow.
+    /// @pre there is no savepoint
+    void pack_records(Workers& workers);
+    /// Gives back everything but corners and neighbours of tetrahedra, of which alone may be asked from now on.
+    void release_all_but_tets();
     /// Puts a removed vertex back, or elsewhere on its carrier: like insert, keeping id and info.
     void reinsert(VertexId v, const Cavity& cavity, const Placement& where);
     /// Takes v out. Cells and labels of the filling are found by flooding from the boundary of the hole. @return false, with nothing
@@ -179,6 +191,7 @@ public:
         std::vector<Entry> entries;
     };
     void save(const std::vector<TetId>& tets, Snapshot& snapshot) const;
+    [[nodiscard]] std::size_t savepoints() const { return frames_.size(); }  ///< (savepoint.hpp)
     /// Undoes insert or reinsert of v; `before` was saved from the cavity's tetrahedra. @param where as it was given then.
     void undo_insertion(VertexId v, const Placement& where, const Snapshot& before);
     /// Undoes remove; `before` was saved from the star of v, which stands at its old point again.
@@ -244,6 +257,51 @@ private:
         FacetId facet{};
     };
 
+    // savepoints
+    struct TetState {
+        TetStore::Corners corners{};
+        std::array<TetFace, 4> across{};
+        CellId cell{};
+        std::uint32_t record = 0;
+    };
+    struct VertexState {
+        Vec3 point{};
+        TetId some_tet{};
+        VertexInfo info{};
+    };
+    /// All of a state but tetrahedra, vertices and records of labels.
+    struct Frame {
+        Triangulation::Frame triangulation;
+        std::size_t vertex_count = 0, records = 0;
+        std::vector<std::uint32_t> free_records;
+        std::vector<std::size_t> on_facet, on_segment;  // how many: only more are put there
+        std::vector<char> facet_labelled;
+        std::vector<TetId> forgotten;
+        std::vector<FacetId> broken_facets;
+        std::vector<SegmentId> broken_segments;
+        std::vector<VertexId> spare_vertices;
+    };
+    void open_savepoint();
+    void roll_back();
+    void close_savepoint();
+    /// To be called before the tetrahedron, its labels left aside, or the vertex changes.
+    void keep(TetId t) {
+        if (old_tets_.wants(t.index())) [[unlikely]]
+            old_tets_.keep(t.index(), {tets().corners(t), tri_.tets().across_all(t), cell_[t.index()], record_[t.index()]});
+    }
+    void keep(VertexId v) {
+        if (old_vertices_.wants(v.index())) [[unlikely]]
+            old_vertices_.keep(v.index(), {point(v), tri_.tet_of(v), info_[v.index()]});
+    }
+    void keep_record(std::uint32_t r) {
+        if (old_records_.wants(r)) [[unlikely]]
+            old_records_.keep(r, records_[r]);
+    }
+    void keep_surroundings(std::span<const TetId> going, std::span<const BoundaryFace> boundary);
+    void keep_taken(std::size_t recycled);
+    void insert_vertex(VertexId v, const Cavity& cavity);
+    void remove_vertex(const Hole& hole);
+
     void capture(const Cavity& cavity, std::vector<CapturedFace>& captured) const;
     [[nodiscard]] bool is_encroached_at(TetId t, const Vec3& p) const;
     void collect_interior(const Cavity& cavity, const Placement& where);
@@ -261,6 +319,8 @@ private:
     /// Makes room for what is known of each tetrahedron.
     void fit_arrays();
     void fit_arrays(Workers& workers);
+    template <class Turned>
+    void pack_records(Workers& workers, Turned&& turned);
     void note_carrier(VertexId v);
     class InsideObserver;
 
@@ -285,6 +345,12 @@ private:
     std::vector<VertexId> added_;           // of a view: inserted
     bool planned_ = false;                  // the next insertion
 
+    // what has changed since the savepoints
+    UndoLog<TetState> old_tets_;
+    UndoLog<VertexState> old_vertices_;
+    UndoLog<TetLabels> old_records_;
+    std::vector<Frame> frames_;  // of the savepoints
+
     // scratch of one insertion
     std::vector<CapturedFace> captured_;
     std::vector<InteriorFace> interior_;
@@ -300,6 +366,7 @@ private:
     Cavity undo_cavity_;
 
     friend class HoleLabeller;
+    friend class Savepoint;
 };
 
 /// Box of the input's vertices.

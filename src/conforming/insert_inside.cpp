@@ -2,13 +2,21 @@
 // Bulk insertion inside cells, and numbering afterwards.
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <numeric>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "conforming/conforming_mesh.hpp"
+#include "core/check.hpp"
 
 namespace wellmesh {
+namespace {
+
+constexpr std::size_t kGrain = std::size_t{1} << 15;
+
+}  // namespace
 
 /// Points that encroach nothing destroy no subface or subsegment: labels on the cavity's boundary are inherited, and that is all.
 class ConformingMesh::InsideObserver : public BulkObserver {
@@ -148,6 +156,7 @@ bool ConformingMesh::is_encroached_at(TetId t, const Vec3& p) const {
 std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<const Vec3> points, InsertionReason reason,
                                                     const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on,
                                                     std::vector<VertexId>& encroaching) {
+    WELLMESH_CHECK(Stage::refine, frames_.empty());
     const std::size_t first = tri_.vertex_count();
     tri_.reserve(first + points.size());
     info_.reserve(first + points.size() + points.size() / 8);
@@ -169,13 +178,41 @@ std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<
 }
 
 void ConformingMesh::insert_known(VertexId v, const Cavity& cavity, const Placement& where) {
-    info_[v.index()].carrier_id = where.carrier_id;
+    set_carrier_id(v, where.carrier_id);
     ++vertex_count_;
     commit(v, cavity, where);
 }
 
+/// @param turned  called with each tetrahedron that has labels, and them: returns those to keep. From any thread.
+template <class Turned>
+void ConformingMesh::pack_records(Workers& workers, Turned&& turned) {
+    WELLMESH_CHECK(Stage::refine, frames_.empty());
+    const std::size_t tets = record_.size();
+    std::vector<std::uint32_t> next((tets + kGrain - 1) / kGrain);
+    workers.for_ranges(tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        next[piece] = static_cast<std::uint32_t>(end - begin - static_cast<std::size_t>(std::count(&record_[0] + begin, &record_[0] + end, 0U)));
+    });
+    std::uint32_t used = 1;  // record 0 means none
+    for (std::uint32_t& n : next) n = std::exchange(used, used + n);
+    SharedArray<TetLabels> packed;
+    packed.resize_as_is(used);
+    packed[0] = TetLabels{};
+    workers.for_ranges(tets, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (record_[i] == 0) continue;
+            packed[next[piece]] = turned(TetId{i}, records_[record_[i]]);
+            record_[i] = next[piece]++;
+        }
+    });
+    records_ = std::move(packed);
+    std::vector<std::uint32_t>().swap(free_records_);
+}
+
+void ConformingMesh::pack_records(Workers& workers) {
+    pack_records(workers, [](TetId, const TetLabels& labels) { return labels; });
+}
+
 void ConformingMesh::renumber_tets(Workers& workers) {
-    constexpr std::size_t kGrain = std::size_t{1} << 15;
     tri_.release_scratch();  // it would be for tetrahedra that are no more
     const Triangulation::Renumbering renumbering = tri_.renumber(workers);
     const std::vector<TetId>& old_of = renumbering.old_of;
@@ -190,32 +227,15 @@ void ConformingMesh::renumber_tets(Workers& workers) {
     };
     take_along(cell_);
     take_along(record_);
-    // Records in the order of their tetrahedra, none between them: whoever looks for labels all over the mesh walks through memory.
-    std::vector<std::uint32_t> next((old_of.size() + kGrain - 1) / kGrain);
-    workers.for_ranges(old_of.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        next[piece] = static_cast<std::uint32_t>(end - begin - static_cast<std::size_t>(std::count(&record_[0] + begin, &record_[0] + end, 0U)));
-    });
-    std::uint32_t used = 1;  // record 0 means none
-    for (std::uint32_t& n : next) n = std::exchange(used, used + n);
-    SharedArray<TetLabels> moved;
-    moved.reserve(used + used / 4);
-    moved.resize_as_is(used);
-    moved[0] = TetLabels{};
     // Labels stand by corner: they follow their vertices.
-    workers.for_ranges(old_of.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (record_[i] == 0) continue;
-            const TetLabels& before = records_[record_[i]];
-            record_[i] = next[piece]++;
-            TetLabels& labels = moved[record_[i]];
-            std::array<unsigned, 4> slot{};  // by corner: where it was
-            for (unsigned k = 0; k < 4; ++k) slot[k] = renumbering.old_corner(TetId{i}, k);
-            for (unsigned k = 0; k < 4; ++k) labels.facets[k] = before.facets[slot[k]];
-            for (unsigned e = 0; e < 6; ++e) labels.segments[e] = before.segments[kEdgeOf[slot[kEdgeCorners[e][0]]][slot[kEdgeCorners[e][1]]]];
-        }
+    pack_records(workers, [&](TetId t, const TetLabels& before) {
+        TetLabels labels;
+        std::array<unsigned, 4> slot{};  // by corner: where it was
+        for (unsigned k = 0; k < 4; ++k) slot[k] = renumbering.old_corner(t, k);
+        for (unsigned k = 0; k < 4; ++k) labels.facets[k] = before.facets[slot[k]];
+        for (unsigned e = 0; e < 6; ++e) labels.segments[e] = before.segments[kEdgeOf[slot[kEdgeCorners[e][0]]][slot[kEdgeCorners[e][1]]]];
+        return labels;
     });
-    records_ = std::move(moved);
-    free_records_.clear();
 }
 
 }  // namespace wellmesh

@@ -210,8 +210,7 @@ bool ConformingMesh::would_break(const Cavity& cavity, const Placement& where) {
 /// Nearly every cavity is inside one cell: nothing is inherited but that.
 void ConformingMesh::commit_inside(VertexId v, const Cavity& cavity) {
     const CellId cell = cell_[cavity.tets[0].index()];
-    tri_.insert_vertex(v, cavity);
-    fit_arrays();
+    insert_vertex(v, cavity);
     for (const TetId t : tri_.new_tets()) cell_[t.index()] = cell;
     if (cell == unknown_cell())
         for (const TetId t : tri_.new_tets()) forget_cell(t);
@@ -228,8 +227,7 @@ void ConformingMesh::commit(VertexId v, const Cavity& cavity, const Placement& w
     const bool splits = where.carrier == CarrierKind::segment;
     for (const TetId t : cavity.tets) drop_labels(t);
 
-    tri_.insert_vertex(v, cavity);
-    fit_arrays();
+    insert_vertex(v, cavity);
 
     const TetStore& tets = tri_.tets();
     const auto& fresh = tri_.new_tets();
@@ -274,6 +272,7 @@ VertexId ConformingMesh::insert(const Cavity& cavity, const Placement& where, co
         v = spare_vertices_.back();
         spare_vertices_.pop_back();
         added_.push_back(v);
+        keep(v);
         tri_.set_point(v, cavity.point);
     } else {
         v = tri_.add_point(cavity.point);
@@ -296,6 +295,7 @@ VertexId ConformingMesh::insert(const Cavity& cavity, const Placement& where, co
 }
 
 void ConformingMesh::reinsert(VertexId v, const Cavity& cavity, const Placement& where) {
+    keep(v);
     if (point(v) != cavity.point) info_[v.index()].ball = VertexId{};
     tri_.set_point(v, cavity.point);
     ++vertex_count_;

@@ -238,8 +238,7 @@ bool ConformingMesh::remove(const Hole& hole) {
     if (std::none_of(hole.star.begin(), hole.star.end(), [&](TetId t) { return has_labels(t); })) {
         // Nothing to inherit but the one cell that the star is in.
         const CellId cell = cell_[hole.star[0].index()];
-        tri_.remove_vertex(hole);
-        fit_arrays();
+        remove_vertex(hole);
         for (const TetId t : tri_.new_tets()) cell_[t.index()] = cell;
         --vertex_count_;
         return true;
@@ -247,8 +246,7 @@ bool ConformingMesh::remove(const Hole& hole) {
     HoleLabeller labeller(*this, hole);
     if (!labeller.run()) return false;
     for (const TetId t : hole.star) drop_labels(t);
-    tri_.remove_vertex(hole);
-    fit_arrays();
+    remove_vertex(hole);
     labeller.write(tri_.new_tets());
     labeller.heal_segment();
     --vertex_count_;

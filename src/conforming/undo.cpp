@@ -48,7 +48,6 @@ void ConformingMesh::save(const std::vector<TetId>& tets, Snapshot& snapshot) co
 
 /// Gives the triangulation's new tetrahedra, which must be those of the snapshot, their cells and labels back.
 void ConformingMesh::restore(const Snapshot& snapshot) {
-    fit_arrays();
     const auto& fresh = tri_.new_tets();
     WELLMESH_CHECK(Stage::shape, fresh.size() == snapshot.entries.size());
     const TetStore& tets = tri_.tets();
@@ -82,7 +81,7 @@ void ConformingMesh::restore(const Snapshot& snapshot) {
 void ConformingMesh::undo_insertion(VertexId v, const Placement& where, const Snapshot& before) {
     WELLMESH_CHECK(Stage::shape, tri_.find_hole(v, undo_hole_));
     for (const TetId t : undo_hole_.star) drop_labels(t);
-    tri_.remove_vertex(undo_hole_);
+    remove_vertex(undo_hole_);
     --vertex_count_;
     restore(before);
     if (where.carrier == CarrierKind::segment) label_edge(where.a, where.b, SegmentId{where.carrier_id});
@@ -94,7 +93,7 @@ void ConformingMesh::undo_removal(VertexId v, const Placement& where, const Snap
     const TetId seed = known != filling.end() ? *known : tri_.locate(point(v), tri_.new_tets()[0]);
     WELLMESH_CHECK(Stage::shape, seed.valid() && tri_.grow_conflict_cavity(point(v), seed, undo_cavity_, [](const BoundaryFace&) { return true; }));
     for (const TetId t : undo_cavity_.tets) drop_labels(t);
-    tri_.insert_vertex(v, undo_cavity_);
+    insert_vertex(v, undo_cavity_);
     ++vertex_count_;
     restore(before);
     if (where.carrier == CarrierKind::segment) label_edge(where.a, where.b, SegmentId{});

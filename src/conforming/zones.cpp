@@ -43,6 +43,9 @@ std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones&
         take(free_records_, room.records, view.free_records_);
         take(spare_vertices_, room.vertices, view.spare_vertices_);
         view.filled_ = filled_;
+        view.old_tets_ = old_tets_.view();
+        view.old_vertices_ = old_vertices_.view();
+        view.old_records_ = old_records_.view();
     }
     return views;
 }
@@ -52,6 +55,9 @@ void ConformingMesh::join(std::vector<ConformingMesh>& views) {
     for (ConformingMesh& view : views) {
         WELLMESH_CHECK(Stage::shape, view.vertex_count_ == before + view.added_.size() && !view.has_broken() && view.forgotten_.empty());
         tri_.join(view.tri_);
+        old_tets_.join(view.old_tets_);
+        old_vertices_.join(view.old_vertices_);
+        old_records_.join(view.old_records_);
         free_records_.insert(free_records_.end(), view.free_records_.begin(), view.free_records_.end());
         vertex_count_ += view.added_.size();
         for (const VertexId v : view.added_) note_carrier(v);

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/check.hpp"
-#include "core/huge_pages.hpp"
+#include "core/page_memory.hpp"
 
 namespace wellmesh {
 
@@ -100,19 +100,24 @@ public:
     void reserve(std::size_t n) {
         if (n <= capacity_) return;
         WELLMESH_CHECK(Stage::delaunay, owns_);
-        constexpr std::size_t kAlignment = std::max<std::size_t>(alignof(T), 64);
-        T* const grown = static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t{kAlignment}));
-        advise_huge_pages(grown, n * sizeof(T));
-        if (size_ != 0) std::copy_n(data_, size_, grown);
-        give_back();
-        data_ = grown;
+        if (data_ != nullptr && is_paged(capacity_)) {
+            data_ = static_cast<T*>(grow_pages(data_, capacity_ * sizeof(T), n * sizeof(T)));
+        } else {
+            T* const grown = static_cast<T*>(is_paged(n) ? take_pages(n * sizeof(T)) : ::operator new(n * sizeof(T), kAlignment));
+            if (size_ != 0) std::copy_n(data_, size_, grown);
+            give_back();
+            data_ = grown;
+        }
         capacity_ = n;
     }
 
 private:
+    static constexpr std::align_val_t kAlignment{std::max<std::size_t>(alignof(T), 64)};
+    static constexpr bool is_paged(std::size_t n) { return kPagesMove && n * sizeof(T) >= kLeastPaged; }
     void give_back() {
-        constexpr std::size_t kAlignment = std::max<std::size_t>(alignof(T), 64);
-        if (owns_ && data_ != nullptr) ::operator delete(data_, std::align_val_t{kAlignment});
+        if (!owns_ || data_ == nullptr) return;
+        if (is_paged(capacity_)) give_back_pages(data_, capacity_ * sizeof(T));
+        else ::operator delete(data_, kAlignment);
     }
     T* data_ = nullptr;
     std::size_t size_ = 0, capacity_ = 0;

@@ -83,6 +83,13 @@ public:
     void reserve(std::size_t tets) { tet_.reserve(tets); }
     void clear();
     [[nodiscard]] std::size_t capacity() const { return tet_.capacity(); }
+    /// Slots that hold none, the next one to be taken last.
+    [[nodiscard]] const std::vector<TetId>& free_slots() const { return free_; }
+    /// As many slots as there were once, these of them free: for an undo, after which they hold what they did then.
+    void cut_back(std::size_t slots, const std::vector<TetId>& free) {
+        tet_.resize_as_is(slots);
+        free_ = free;
+    }
     /// Tetrahedron t[i] becomes number i; what is not listed is forgotten, and no slot is free. Adjacencies name the new numbers already.
     /// @param scratch  one for each slot
     void reorder(std::span<const TetId> t, std::span<TetId> scratch, Workers& workers);

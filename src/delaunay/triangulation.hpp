@@ -191,6 +191,10 @@ public:
     Renumbering renumber(Workers& workers);
     /// Gives back memory that searches and changes need: the next one takes it again.
     void release_scratch() { mark_.release(); }
+    void release_all_but_tets() {
+        release_scratch();
+        vertices_.release();
+    }
     /// The same memory for another use: a number for each tetrahedron.
     [[nodiscard]] SharedArray<std::uint32_t> take_scratch() { return std::exchange(mark_, {}); }
 
@@ -200,6 +204,27 @@ public:
     /// Replaces the star by the filling (ids in new_tets(), in the order of hole.filling). The point stays stored, not inserted.
     void remove_vertex(const Hole& hole);
     void set_point(VertexId v, const Vec3& p) { vertices_[v.index()].point = p; }  ///< @pre v is not inserted
+
+    // --- an earlier state put back, by whoever has kept what has changed since
+    /// All of a state but its tetrahedra and vertices.
+    struct Frame {
+        std::size_t slots = 0, vertices = 0;
+        std::vector<TetId> free;
+        TetId last_located{};
+    };
+    [[nodiscard]] Frame frame() const { return {tets_.slots(), vertices_.size(), tets_.free_slots(), last_located_}; }
+    /// What is beyond the frame goes. Marks and numbers of searches go on: they only need to be new.
+    void cut_back(const Frame& frame) {
+        tets_.cut_back(frame.slots, frame.free);
+        vertices_.resize_as_is(frame.vertices);
+        last_located_ = frame.last_located;
+    }
+    void put_back(TetId t, const TetStore::Corners& corners, const std::array<TetFace, 4>& across) { tets_.set(t, corners, across); }
+    /// @param some_tet  of its star, as tet_of() said
+    void put_back(VertexId v, const Vec3& p, TetId some_tet) {
+        vertices_[v.index()].point = p;
+        vertices_[v.index()].tet = some_tet;
+    }
 
     void reserve(std::size_t vertices);
 

@@ -138,41 +138,39 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, Workers& workers, I
 
 }  // namespace
 
-TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order, Workers& workers) {
+TetMesh extract_mesh(ConformingMesh&& mesh, Workers& workers, const std::function<void(const std::vector<TetId>& order)>& look) {
     TetMesh out;
     const TetStore& tets = mesh.tets();
     const ValidPlc& plc = mesh.plc();
     std::vector<std::uint32_t> number(mesh.vertex_slots(), kUnused);
     const auto in_output = [&](TetId t) { return tets.is_finite(t) && mesh.in_domain(t); };
-    order = number_output(mesh, workers, in_output, number, out);
+    const std::vector<TetId> order = number_output(mesh, workers, in_output, number, out);
     return_freed_memory();
+    look(order);
+    mesh.triangulation().release_scratch();
     const std::size_t count = order.size();
-    reserve_on_huge_pages(out.tets, count, workers);
     reserve_on_huge_pages(out.tet_regions, count, workers);
-    out.tets.resize(count);
     out.tet_regions.resize(count);
     struct Listed {
         std::vector<ListedFace> faces;
         std::vector<ListedEdge> edges;
     };
     std::vector<Listed> listed((count + kGrain - 1) / kGrain);
-    constexpr std::size_t kAhead = 16;
     workers.for_ranges(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         for (std::size_t i = begin; i < end; ++i) {
-            if (i + kAhead < count) tets.prefetch(order[i + kAhead]);
             const TetId t = order[i];
-            const auto& c = tets.corners(t);
-            out.tets[i] = {number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]};
             out.tet_regions[i] = plc.cells[mesh.cell(t).index()].region;
             if (mesh.has_labels(t)) list_constraints(mesh, t, number, listed[piece].faces, listed[piece].edges);
         }
     });
+    mesh.release_all_but_tets();
     std::vector<ListedFace> faces;
     std::vector<ListedEdge> edges;
     for (const Listed& l : listed) {
         faces.insert(faces.end(), l.faces.begin(), l.faces.end());
         edges.insert(edges.end(), l.edges.begin(), l.edges.end());
     }
+    listed.clear();
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     out.subfaces.reserve(faces.size());
@@ -188,6 +186,16 @@ TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order, Work
         out.subsegment_segments.push_back(static_cast<std::int32_t>(e.segment.value()) + 1);
         out.subsegment_markers.push_back(plc.segments[e.segment.index()].marker);
     }
+    reserve_on_huge_pages(out.tets, count, workers);
+    out.tets.resize(count);
+    constexpr std::size_t kAhead = 16;
+    workers.for_ranges(count, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + kAhead < count) tets.prefetch(order[i + kAhead]);
+            const auto& c = tets.corners(order[i]);
+            out.tets[i] = {number[c[0].index()], number[c[1].index()], number[c[2].index()], number[c[3].index()]};
+        }
+    });
     return out;
 }
 

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "conforming/conforming_mesh.hpp"
 #include "core/workers.hpp"
 #include "wellmesh/tet_mesh.hpp"
 
 namespace wellmesh {
 
-/// The domain's part of the mesh, vertices renumbered in order of insertion; ghosts, holes and the outside are left behind.
-/// @param order  gets the tetrahedra in the order of the output.
-[[nodiscard]] TetMesh extract_mesh(const ConformingMesh& mesh, std::vector<TetId>& order, Workers& workers);
+/// The domain's part of the mesh, vertices renumbered in order of insertion; ghosts, holes and the outside are left behind. The mesh is used up: it need not be
+/// there twice.
+/// @param look  is called before that, with the tetrahedra in the order of the output
+[[nodiscard]] TetMesh extract_mesh(ConformingMesh&& mesh, Workers& workers, const std::function<void(const std::vector<TetId>& order)>& look);
+/// Leaves the mesh as it is.
 [[nodiscard]] inline TetMesh extract_mesh(const ConformingMesh& mesh) {
-    std::vector<TetId> order;
     Workers alone;
-    return extract_mesh(mesh, order, alone);
+    return extract_mesh(ConformingMesh(mesh), alone, [](const std::vector<TetId>&) {});
 }
 
 /// Largest angle by which two subfaces of one facet bend in an edge that is no subsegment: 0 but for rounding.

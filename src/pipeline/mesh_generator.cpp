@@ -6,6 +6,8 @@
 #include <new>
 #include <numeric>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -228,6 +230,7 @@ private:
             // The published ways have no seeds: they begin with what Delaunay refinement makes.
             if (!given_ && options_.slivers == SliverStrategy::best && options_.seeding == Seeding::automatic && !certified)
                 LatticeSeeder(mesh, boundary, guard_, refiner.sizes(), workers_).seed();
+            return_freed_memory();  // of bulk insertion, beside which there would be the queues of refinement
             const std::size_t before = mesh.vertex_count();
             verdict = refiner.refine();
             if (given_) result_.statistics.given->added_for_refinement = mesh.vertex_count() - before;
@@ -237,6 +240,8 @@ private:
         const bool exudes = options_.slivers == SliverStrategy::exude;  // the finished mesh gets weights
         if (verdict == RunGuard::Verdict::go_on && !certified && !exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {
+                return_freed_memory();
+                mesh.pack_records(workers_);
                 const SliverOutcome outcome = remove_slivers(mesh, boundary, refiner, guard_, workers_, options_);
                 verdict = outcome.verdict;
                 result_.statistics.moved_vertices = outcome.moved_vertices;
@@ -244,15 +249,14 @@ private:
                 count();
             });
         if (!certified && only_refines(options_.slivers)) finish_theory(recorder.get(), boundary, result_);
-        std::vector<TetId> order;
         timed(Stage::extract, [&] {
-            // The mesh will be there twice.
             mesh.triangulation().release_scratch();
             return_freed_memory();
-            result_.mesh = extract_mesh(mesh, order, workers_);
+            result_.mesh = extract_mesh(std::move(mesh), workers_, [&](const std::vector<TetId>& order) {
+                result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number, workers_);
+                result_.statistics.gaps = gaps_left(result_.exemptions, mesh, refiner, plc_.first_number);
+            });
             result_.mesh.names = plc_.names;
-            result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number, workers_);
-            result_.statistics.gaps = gaps_left(result_.exemptions, mesh, refiner, plc_.first_number);
             if (result_.statistics.gaps) result_.statistics.notes.push_back(describe(*result_.statistics.gaps));
             size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());
         });

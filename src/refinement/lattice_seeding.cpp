@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/infinity.hpp"
+#include "core/resident_memory.hpp"
 #include "core/rng.hpp"
 #include "core/shared_guard.hpp"
 #include "core/vec3_math.hpp"
@@ -405,10 +406,12 @@ std::uint64_t LatticeSeeder::seed() {
     std::vector<Seed> seeds = seeds_of(find_lattice(base));
     for (double coarseness = kCoarsest; coarseness >= 1; coarseness /= 2) {
         if (!split_boundary(coarseness)) break;
+        mesh_.pack_records(workers_);
         // As many as the coarse mesh would have.
         const auto share = static_cast<std::size_t>(static_cast<double>(seeds.size()) / (coarseness * coarseness * coarseness));
         const bool goes_on = insert_seeds({seeds.data(), share});
         if (coarseness == 1) std::vector<Seed>().swap(seeds);  // memory is short while tetrahedra are numbered
+        return_freed_memory();
         mesh_.renumber_tets(workers_);  // what comes next goes by ids
         if (!goes_on) break;
     }

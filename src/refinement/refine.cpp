@@ -164,7 +164,7 @@ RunGuard::Verdict Refiner::refine() {
         } catch (const MeshError& e) {
             // A cascade at acute input that met the ceiling, or what can't be split any further: without what set it off, once more from the mesh before it.
             if (e.code() != ErrorCode::budget_exhausted || !last_) throw;
-            mesh_ = *last_;
+            last_->go_back();
             forget_waiting();
             if (cascades == kMostCascades) break;
             given_up_.insert(splitting_);
@@ -174,7 +174,7 @@ RunGuard::Verdict Refiner::refine() {
     // The algorithm's own ceiling ends refinement, not the run.
     if (verdict == RunGuard::Verdict::out_of_vertices && !guard_.user_limit_spent()) verdict = RunGuard::Verdict::go_on;
     keeps_last_ = false;
-    if (last_ && guard_.has_too_many(mesh_.vertex_count())) mesh_ = std::move(*last_);
+    if (last_ && guard_.has_too_many(mesh_.vertex_count())) last_->go_back();
     last_.reset();
     return verdict;
 }
@@ -194,7 +194,8 @@ void Refiner::keep_last() {
     const std::uint64_t count = mesh_.vertex_count(), left = max_vertices_ ? *max_vertices_ - std::min(count, *max_vertices_) : count;
     const bool due = !last_ || (max_vertices_ ? left <= left_at_last_ / 2 : count >= 2 * left_at_last_);
     if (!due || left == 0 || !guard_.can_double()) return;
-    last_ = mesh_;
+    last_.reset();  // savepoints end in the opposite order of their beginning
+    last_.emplace(mesh_);
     left_at_last_ = left;
 }
 

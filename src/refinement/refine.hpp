@@ -15,6 +15,7 @@
 #include "conforming/acute_exemptions.hpp"
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
+#include "conforming/savepoint.hpp"
 #include "core/run_guard.hpp"
 #include "core/workers.hpp"
 #include "refinement/bad_tet_queue.hpp"
@@ -134,7 +135,7 @@ private:
     Workers& workers_;
     AcuteExemptions exemptions_;
     ThinGaps gaps_;
-    std::optional<ConformingMesh> last_;  // of refine(), with fewer vertices than the user allows
+    std::optional<Savepoint> last_;       // of refine(), with fewer vertices than the user allows
     std::uint64_t left_at_last_ = 0;      // vertices that were left then, or that were there if the user allows any number
     bool keeps_last_ = false;
     std::shared_ptr<const SizeField> shared_sizes_;  // with views of zones

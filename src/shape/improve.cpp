@@ -196,7 +196,7 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
 
 /// The same, but a split that sets off a cascade at acute input, which ends at the algorithm's ceiling or where segments can't be split any further, is
 /// undone with all others since `last`; they are tried again, but for that one.
-RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, const ConformingMesh& last) {
+RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, Savepoint& last) {
     for (unsigned cascades = 0; cascades < kMostCascades; ++cascades) {
         RunGuard::Verdict verdict = RunGuard::Verdict::out_of_vertices;
         try {
@@ -206,7 +206,7 @@ RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, const Conformin
         }
         if (verdict != RunGuard::Verdict::out_of_vertices || guard_.user_limit_spent()) return verdict;
         given_up_.insert(splitting_);
-        mesh_ = last;
+        last.go_back();
         refiner_.forget_waiting();
         mending_.collect(workers_);
     }
@@ -217,7 +217,7 @@ RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, const Conformin
 RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_at_start, bool& reached) {
     const auto is_below = [&](const Bad& b) { return b.badness > rung_cosine && !given_up_.contains(key_of(b.corners)); };
     const auto below = [&] { return std::any_of(left().begin(), left().end(), is_below); };
-    std::optional<ConformingMesh> last;
+    std::optional<Savepoint> last;
     double last_worst = 0;
     std::size_t last_left = 0;
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
@@ -225,7 +225,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
         const bool spent = static_cast<double>(mesh_.vertex_count()) > kVertexBudget * static_cast<double>(vertices_at_start) + kVertexAllowance;
         if (spent || round == kSplitRounds || (!last && !guard_.can_double())) break;
         if (!last) {
-            last = mesh_;
+            last.emplace(mesh_);
             last_worst = worst_cosine();
             last_left = left().size();
         }
@@ -238,7 +238,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
     const bool by_number = refiner_.may_excuse();
     const bool no_better = by_number ? last_left <= left().size() : last_worst <= worst_cosine();
     if (last && (no_better || guard_.has_too_many(mesh_.vertex_count()))) {
-        mesh_ = std::move(*last);
+        last->go_back();
         mending_.collect(workers_);
     }
     if (by_number) {
@@ -274,13 +274,13 @@ RunGuard::Verdict ShapeImprover::try_afresh() {
         verdict = smooth_around_bad(2);
         if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples << (r + 1), kPatientPasses, LastResort::remove_or_insert);
         if (verdict != RunGuard::Verdict::go_on || left().empty() || !guard_.can_double()) continue;
-        const ConformingMesh last = mesh_;
+        Savepoint last(mesh_);
         const std::size_t before = left().size();
         verdict = split_or_go_back(judge_.goal(), last);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
         // A few less now and then is luck, and leaves what only another grading can do to the next try.
         if (worth_it(before, left().size()) && !guard_.has_too_many(mesh_.vertex_count())) continue;
-        mesh_ = last;
+        last.go_back();
         mending_.collect(workers_);
         if (verdict == RunGuard::Verdict::go_on) verdict = grade_afresh();
     }
@@ -314,11 +314,11 @@ RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
     // kept if the next one ends lower, out of reach or out of time.
     for (double rung = kStraightDeg; verdict == RunGuard::Verdict::go_on && left().empty() && rung < angle_deg && guard_.can_double();) {
         rung = std::min(rung + kRungDeg, angle_deg);
-        const ConformingMesh last = mesh_;
+        Savepoint last(mesh_);
         const double last_worst = worst_cosine();
         verdict = aim_at(rung, vertices);
         if (worst_cosine() > last_worst) {
-            mesh_ = last;
+            last.go_back();
             mending_.collect(workers_);
         }
     }

@@ -17,6 +17,7 @@
 
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
+#include "conforming/savepoint.hpp"
 #include "core/run_guard.hpp"
 #include "core/workers.hpp"
 #include "refinement/refine.hpp"
@@ -80,7 +81,7 @@ private:
     RunGuard::Verdict thin_out(std::size_t first_new, std::size_t enough);
     RunGuard::Verdict climb(double rung_cosine, std::size_t vertices_at_start, bool& reached);
     RunGuard::Verdict split_worse_than(double cosine);
-    RunGuard::Verdict split_or_go_back(double cosine, const ConformingMesh& last);
+    RunGuard::Verdict split_or_go_back(double cosine, Savepoint& last);
     RunGuard::Verdict try_afresh();
     RunGuard::Verdict grade_afresh();
     [[nodiscard]] double badness_of(TetId t);

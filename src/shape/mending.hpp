@@ -79,14 +79,14 @@ private:
     };
     struct Stuck {
         std::uint64_t when = 0;
-        std::uint64_t pass = 0;
+        std::uint32_t pass = 0;
         unsigned failures = 0;                      // since its neighbourhood changed last
         unsigned smoothings = 0, last_resorts = 0;  // in all
     };
     /// Moves of a vertex that failed since its star changed last.
     struct Tried {
-        std::uint64_t when = 0, pass = 0;
-        unsigned failures = 0;
+        std::uint64_t when = 0;
+        std::uint32_t pass = 0, failures = 0;
     };
     enum class Outcome : std::uint8_t { done, failed, left_zone };
 
@@ -100,7 +100,8 @@ private:
     const TetJudge& judge_;
     VertexMover& mover_;
     Blocks blocks_;
-    std::uint64_t clock_ = 0, pass_ = 0;
+    std::uint64_t clock_ = 0;
+    std::uint32_t pass_ = 0;
     SharedArray<std::uint64_t> touched_;               // per vertex: when its star changed last
     SharedArray<Tried> tried_;                         // per vertex
     std::unordered_map<std::uint64_t, Stuck> stuck_;   // by corners; each is looked up, in no order

@@ -47,7 +47,7 @@ RunGuard::Verdict ShapeImprover::rescue() {
 /// Around the balls about acute vertices that are in the way of splits; then around those that are in the way of what is left.
 RunGuard::Verdict ShapeImprover::grade_afresh() {
     if (!guard_.can_double()) return RunGuard::Verdict::go_on;
-    const ConformingMesh last = mesh_;
+    Savepoint last(mesh_);
     const std::vector<double> balls = refiner_.balls();
     const std::size_t before = left().size();
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
@@ -55,7 +55,7 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
         std::vector<TetId> stuck;
         for (const Bad& b : left())
             if (const TetId t = find_tet(mesh_, b.corners, b.last); t.valid()) stuck.push_back(t);
-        const ConformingMesh previous = mesh_;
+        Savepoint previous(mesh_);
         try {
             verdict = refiner_.grade_afresh(stuck);
         } catch (const MeshError& e) {
@@ -63,7 +63,7 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
             verdict = RunGuard::Verdict::out_of_vertices;
         }
         if (verdict == RunGuard::Verdict::out_of_vertices && !guard_.user_limit_spent()) {
-            mesh_ = previous;
+            previous.go_back();
             refiner_.forget_waiting();
             mending_.collect(workers_);
             verdict = RunGuard::Verdict::go_on;
@@ -72,12 +72,12 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
         mending_.collect(workers_);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
         if (left().empty() || verdict != RunGuard::Verdict::go_on) break;
-        const ConformingMesh settled = mesh_;
+        Savepoint settled(mesh_);
         verdict = split_or_go_back(judge_.goal(), settled);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
     }
     if (verdict == RunGuard::Verdict::go_on && left().size() < before && !guard_.has_too_many(mesh_.vertex_count())) return verdict;
-    mesh_ = last;
+    last.go_back();
     refiner_.set_balls(balls);
     mending_.collect(workers_);
     return verdict;
@@ -87,12 +87,12 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
 RunGuard::Verdict ShapeImprover::thin_out(std::size_t first_new, std::size_t enough) {
     if (!refiner_.may_excuse()) return thinning_.run(first_new, enough);
     if (!guard_.can_double()) return RunGuard::Verdict::go_on;
-    ConformingMesh last = mesh_;
+    Savepoint last(mesh_);
     RunGuard::Verdict verdict = thinning_.run(first_new, enough);
     mending_.collect(workers_);
     if (!left().empty() && verdict == RunGuard::Verdict::go_on) verdict = rescue();
     if (left().empty()) return verdict;
-    mesh_ = std::move(last);
+    last.go_back();
     mending_.collect(workers_);
     return verdict;
 }

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/shared_array.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <utility>
+
+namespace wellmesh::testing {
+namespace {
+
+struct alignas(32) Item {
+    std::uint64_t a = 0, b = 0, c = 0, d = 0;
+};
+
+TEST(SharedArray, KeepsWhatItHoldsThroughEverySize) {
+    SharedArray<Item> array;
+    std::size_t moves = 0;
+    const Item* at = nullptr;
+    // From the allocator's memory to pages, small ones and huge ones.
+    for (std::uint64_t i = 0; i < 1'500'000; ++i) {
+        array.push_back({i, ~i, 0, 0});
+        moves += std::exchange(at, array.data()) != array.data();
+    }
+    EXPECT_GT(moves, 10U);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(array.data()) % 64, 0U);
+    for (std::uint64_t i = 0; i < array.size(); ++i) ASSERT_TRUE(array[i].a == i && array[i].b == ~i) << i;
+    SharedArray<Item> copy = array, view = copy.view();
+    view[7].a = 1;
+    EXPECT_EQ(copy[7].a, 1U);
+    EXPECT_EQ(array[7].a, 7U);
+    const SharedArray<Item> owned = view;
+    copy.release();
+    EXPECT_EQ(copy.capacity(), 0U);
+    EXPECT_EQ(owned[7].a, 1U);
+    EXPECT_EQ(owned.size(), array.size());
+}
+
+#ifdef __linux__
+
+/// Since the last call the process has held at most so many bytes; 0 if the system doesn't say.
+std::uint64_t most_resident_bytes() {
+    std::ifstream status("/proc/self/status");
+    std::uint64_t kilobytes = 0;
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmHWM:")) kilobytes = std::stoull(line.substr(6));
+    std::ofstream("/proc/self/clear_refs") << "5";
+    return kilobytes * 1024;
+}
+
+TEST(SharedArray, IsNotThereTwiceWhileItGrows) {
+    if (!kPagesMove) GTEST_SKIP() << "the allocator's memory is copied";
+    constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+    SharedArray<std::uint8_t> array;
+    array.assign(64 * kMiB, 1);
+    (void)most_resident_bytes();
+    const std::uint64_t before = most_resident_bytes();
+    if (before == 0 || before > 1000 * kMiB) GTEST_SKIP() << "the system does not say what is resident";
+    array.reserve(512 * kMiB);
+    array.push_back(2);
+    EXPECT_LT(most_resident_bytes(), before + 16 * kMiB);
+    EXPECT_EQ(array[64 * kMiB - 1], 1);
+    EXPECT_EQ(array.back(), 2);
+}
+
+#endif
+
+}  // namespace
+}  // namespace wellmesh::testing
