@@ -36,7 +36,7 @@ public:
             for (std::size_t k = 0; k < share; ++k) {
                 if (free.empty()) {
                     free.push_back(static_cast<std::uint32_t>(mesh_.records_.size()));
-                    mesh_.records_.push_back(TetLabels{});
+                    mesh_.records_.resize_as_is(mesh_.records_.size() + 1);
                 }
                 part.records_.push_back(free.back());
                 free.pop_back();

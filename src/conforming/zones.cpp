@@ -21,9 +21,10 @@ std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones&
     }
     tri_.split(workers, zones, room.tets, parts);
     fit_arrays(workers);
-    while (free_records_.size() < room.records * zones.count()) {
-        free_records_.push_back(static_cast<std::uint32_t>(records_.size()));
-        records_.push_back(TetLabels{});
+    if (const std::size_t wanted = room.records * zones.count(), free = free_records_.size(); free < wanted) {
+        // Left as they are in memory: most are never used.
+        for (std::size_t r = records_.size(); r < records_.size() + wanted - free; ++r) free_records_.push_back(static_cast<std::uint32_t>(r));
+        records_.resize_as_is(records_.size() + wanted - free);
     }
     const auto take = [](auto& from, std::size_t count, auto& to) {
         to.assign(from.end() - static_cast<std::ptrdiff_t>(count), from.end());

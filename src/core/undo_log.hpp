@@ -58,8 +58,9 @@ public:
         size_ = levels_.back().size;
         auto kept = entries_.begin() + static_cast<std::ptrdiff_t>(first);
         for (auto e = kept; e != entries_.end(); ++e) {
-            level_of_[e->index] = level_;
-            if (e->index < size_ && e->level_before != level_) *kept++ = *e;
+            const bool is_new = e->index >= size_;  // since the savepoint before: no entry will tell of it any more
+            level_of_[e->index] = is_new ? std::uint8_t{0} : level_;
+            if (!is_new && e->level_before != level_) *kept++ = *e;
         }
         entries_.erase(kept, entries_.end());
     }

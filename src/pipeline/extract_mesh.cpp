@@ -147,7 +147,7 @@ TetMesh extract_mesh(ConformingMesh&& mesh, Workers& workers, const std::functio
     const std::vector<TetId> order = number_output(mesh, workers, in_output, number, out);
     return_freed_memory();
     look(order);
-    mesh.triangulation().release_scratch();
+    mesh.triangulation().release_all_but_tets();
     const std::size_t count = order.size();
     reserve_on_huge_pages(out.tet_regions, count, workers);
     out.tet_regions.resize(count);

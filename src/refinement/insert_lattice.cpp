@@ -8,6 +8,7 @@
 #include "conforming/place_point.hpp"
 #include "core/huge_pages.hpp"
 #include "core/infinity.hpp"
+#include "core/resident_memory.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/spatial_order.hpp"
@@ -63,6 +64,7 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
     std::vector<char> in_bulk(seeds.size(), 0);
     if (!guard_.has_too_many(mesh_.vertex_count() + seeds.size())) {
         in_bulk = find_clear(seeds);
+        return_freed_memory();
         if (!insert_in_bulk(seeds, in_bulk)) return false;
     }
     TetId near{};

@@ -57,8 +57,6 @@ bool lies_between_ends(const ConformingMesh& mesh, const Placement& where, const
     return dot(p - a, b - a) > 0 && dot(p - b, a - b) > 0;
 }
 
-constexpr std::array kKinds{CarrierKind::segment, CarrierKind::facet, CarrierKind::region};
-
 /// Fine enough that many places encroach nothing.
 class Labels : public ::testing::TestWithParam<std::tuple<std::size_t, std::uint64_t, double>> {
 protected:

@@ -19,8 +19,6 @@
 namespace wellmesh::testing {
 namespace {
 
-constexpr std::array kKinds{CarrierKind::segment, CarrierKind::facet, CarrierKind::region};
-
 struct Refined {
     StagedMesh staged;
     Refiner refiner;

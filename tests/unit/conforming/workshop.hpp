@@ -14,6 +14,8 @@
 
 namespace wellmesh::testing {
 
+inline constexpr std::array kKinds{CarrierKind::segment, CarrierKind::facet, CarrierKind::region};
+
 struct Spot {
     Vec3 point{};
     TetId near{};
