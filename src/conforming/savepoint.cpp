@@ -17,8 +17,8 @@ void ConformingMesh::open_savepoint() {
         std::transform(lists.begin(), lists.end(), out.begin(), [](const std::vector<VertexId>& list) { return list.size(); });
         return out;
     };
-    frames_.push_back({tri_.frame(), vertex_count_, records_.size(), free_records_, sizes(on_facet_), sizes(on_segment_), facet_labelled_, forgotten_, broken_facets_,
-                       broken_segments_, spare_vertices_});
+    frames_.push_back({tri_.frame(), vertex_count_, records_.size(), free_records_, sizes(on_facet_), sizes(on_segment_), facet_labelled_, forgotten_,
+                       broken_facets_, broken_segments_, spare_vertices_});
     old_tets_.open(tets().slots());
     old_vertices_.open(info_.size());
     old_records_.open(records_.size());

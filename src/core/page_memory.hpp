@@ -16,7 +16,8 @@ inline constexpr bool kPagesMove = false;
 /// Smaller arrays are the allocator's.
 inline constexpr std::size_t kLeastPaged = std::size_t{1} << 21;
 
-/// Zeros, on huge pages where there is enough of them: visits at random miss the translation buffer with small ones. @throws std::bad_alloc. @pre kPagesMove, for all of these
+/// Zeros, on huge pages where there is enough of them: visits at random miss the translation buffer with small ones.
+/// @throws std::bad_alloc. @pre kPagesMove, for all of these
 [[nodiscard]] void* take_pages(std::size_t bytes);
 /// The same content in more memory; `pages` is no more. @throws std::bad_alloc, with nothing changed
 [[nodiscard]] void* grow_pages(void* pages, std::size_t bytes, std::size_t more_bytes);

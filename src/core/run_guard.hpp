@@ -61,7 +61,7 @@ public:
     [[nodiscard]] bool limits_vertices() const { return limits_.max_vertices.has_value(); }
     /// More vertices than the user allows: what a cascade must finish may add some after the last of them.
     [[nodiscard]] bool has_too_many(std::uint64_t vertices) const { return limits_.max_vertices && vertices > *limits_.max_vertices; }
-    /// Whether there is memory for another copy of all that the process holds: copies that are kept only to fall back on are left out otherwise.
+    /// Whether there is memory for another copy of all that the process holds: savepoints, which may come to keep as much as the mesh holds, are left out otherwise.
     [[nodiscard]] bool can_double() const;
 
 private:

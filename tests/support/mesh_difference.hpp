@@ -12,14 +12,15 @@
 namespace wellmesh::testing {
 
 inline bool same_info(const VertexInfo& a, const VertexInfo& b) {
-    return a.carrier == b.carrier && a.reason == b.reason && a.copied == b.copied && a.generation == b.generation && a.carrier_id == b.carrier_id && a.parent == b.parent &&
-           a.ball == b.ball && a.insertion_length == b.insertion_length;
+    return a.carrier == b.carrier && a.reason == b.reason && a.copied == b.copied && a.generation == b.generation && a.carrier_id == b.carrier_id &&
+           a.parent == b.parent && a.ball == b.ball && a.insertion_length == b.insertion_length;
 }
 
 /// Where two meshes of one domain are not the same, ids and what later changes depend on included; empty: nowhere.
 inline std::string difference(const ConformingMesh& a, const ConformingMesh& b) {
     const Triangulation::Frame mine = a.triangulation().frame(), theirs = b.triangulation().frame();
-    if (mine.slots != theirs.slots || mine.vertices != theirs.vertices) return fmt::format("{} and {} slots, {} and {} vertices", mine.slots, theirs.slots, mine.vertices, theirs.vertices);
+    if (mine.slots != theirs.slots || mine.vertices != theirs.vertices)
+        return fmt::format("{} and {} slots, {} and {} vertices", mine.slots, theirs.slots, mine.vertices, theirs.vertices);
     if (mine.free != theirs.free) return "free slots";
     if (mine.last_located != theirs.last_located) return "where searches begin";
     if (a.vertex_count() != b.vertex_count() || a.vertex_slots() != b.vertex_slots()) return "numbers of vertices";

@@ -23,7 +23,8 @@ struct Refined {
     StagedMesh staged;
     Refiner refiner;
 
-    explicit Refined(const Plc& plc, double edge) : staged(plc, with_edge(edge * diagonal(plc))), refiner((staged.conform(), staged.mesh), staged.boundary, staged.guard, staged.options) {
+    Refined(const Plc& plc, double edge)
+        : staged(plc, with_edge(edge * diagonal(plc))), refiner((staged.conform(), staged.mesh), staged.boundary, staged.guard, staged.options) {
         EXPECT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
         EXPECT_EQ(staged.problem(true), "");
     }
