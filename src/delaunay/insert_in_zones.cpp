@@ -19,8 +19,8 @@ namespace {
 
 /// Fewer points than these a zone are not worth the trouble: most would lie near its limits.
 constexpr std::size_t kLeastPointsAZone = 256;
-/// To cut costs a few nanoseconds a tetrahedron, to insert a few microseconds a point.
-constexpr std::size_t kTetsAPoint = 1024;
+/// To cut costs some ten nanoseconds a tetrahedron, to insert a few microseconds a point.
+constexpr std::size_t kTetsAPoint = 256;
 /// Points grow by this factor from one share-out to the next: a zone's limits get thinner as its points get denser.
 constexpr std::size_t kGrowth = 8;
 constexpr std::size_t kBetweenQuestions = 512;  // insertions, of microseconds mostly
