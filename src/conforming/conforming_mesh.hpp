@@ -168,8 +168,8 @@ public:
     void insert_known(VertexId v, const Cavity& cavity, const Placement& where);
     /// Ids of tetrahedra that depend on the mesh alone; all ids from before are void. @pre nothing is broken or forgotten, and there is no savepoint
     void renumber_tets(Workers& workers);
-    /// Leaves only as many records of labels as there are labels, in the order of their tetrahedra: work in zones and bulk insertion leave many times that, anyhow.
-    /// @pre there is no savepoint
+    /// Leaves only as many records of labels as there are labels, in the order of their tetrahedra: work in zones and bulk insertion leave many times
+    /// that, anyhow. @pre there is no savepoint
     void pack_records(Workers& workers);
     /// Gives back everything but corners and neighbours of tetrahedra, of which alone may be asked from now on.
     void release_all_but_tets();
@@ -350,6 +350,7 @@ private:
     UndoLog<VertexState> old_vertices_;
     UndoLog<TetLabels> old_records_;
     std::vector<Frame> frames_;  // of the savepoints
+    bool has_views_ = false;     // which keep what they change until they are joined
 
     // scratch of one insertion
     std::vector<CapturedFace> captured_;

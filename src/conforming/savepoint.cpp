@@ -25,6 +25,7 @@ void ConformingMesh::open_savepoint() {
 }
 
 void ConformingMesh::roll_back() {
+    WELLMESH_CHECK(Stage::shape, !has_views_);
     const Frame& frame = frames_.back();
     tri_.cut_back(frame.triangulation);
     cell_.resize_as_is(frame.triangulation.slots);  // fit_arrays() fills what comes after

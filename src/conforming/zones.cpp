@@ -30,6 +30,7 @@ std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones&
         to.assign(from.end() - static_cast<std::ptrdiff_t>(count), from.end());
         from.resize(from.size() - count);
     };
+    has_views_ = true;
     std::vector<ConformingMesh> views;
     views.reserve(zones.count());
     for (std::size_t z = 0; z < zones.count(); ++z) {
@@ -52,6 +53,7 @@ std::vector<ConformingMesh> ConformingMesh::split(Workers& workers, const Zones&
 }
 
 void ConformingMesh::join(std::vector<ConformingMesh>& views) {
+    has_views_ = false;
     const std::size_t before = vertex_count_;
     for (ConformingMesh& view : views) {
         WELLMESH_CHECK(Stage::shape, view.vertex_count_ == before + view.added_.size() && !view.has_broken() && view.forgotten_.empty());

@@ -2,6 +2,7 @@
 // One place where a run learns that it must end: cancelled, out of time, of vertices or of memory; and where progress is told.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -61,7 +62,13 @@ public:
     [[nodiscard]] bool limits_vertices() const { return limits_.max_vertices.has_value(); }
     /// More vertices than the user allows: what a cascade must finish may add some after the last of them.
     [[nodiscard]] bool has_too_many(std::uint64_t vertices) const { return limits_.max_vertices && vertices > *limits_.max_vertices; }
-    /// Whether there is memory for another copy of all that the process holds: savepoints, which may come to keep as much as the mesh holds, are left out otherwise.
+    /// How many more vertices the user allows; empty: no limit.
+    [[nodiscard]] std::optional<std::uint64_t> vertices_left(std::uint64_t vertices) const {
+        if (!limits_.max_vertices) return std::nullopt;
+        return *limits_.max_vertices - std::min(vertices, *limits_.max_vertices);
+    }
+    /// Whether there is memory for another copy of all that the process holds: savepoints, which may come to keep as much as the mesh holds, are left
+    /// out otherwise.
     [[nodiscard]] bool can_double() const;
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What elements of an array were before they changed, so that the array can be put back into an earlier state: the undo log of databases, with nested
-// savepoints. Each element is kept once, just before its first change since the last savepoint, so that the log never outgrows a copy of the array by much, and
+// savepoints. Each element is kept once, just before its first change since the last savepoint, so that the log holds no more than a copy of the array for each savepoint, and
 // mostly is far smaller.
 #pragma once
 
@@ -25,7 +25,10 @@ public:
     /// Is element i to be kept before it changes?
     [[nodiscard]] bool wants(std::size_t i) const { return i < size_ && level_of_[i] != level_; }
     /// @pre wants(i)
-    void keep(std::size_t i, const Value& before) { entries_.push_back({static_cast<std::uint32_t>(i), std::exchange(level_of_[i], level_), before}); }
+    void keep(std::size_t i, const Value& before) {
+        entries_.push_back({static_cast<std::uint32_t>(i), level_of_[i], before});
+        level_of_[i] = level_;
+    }
 
     /// A savepoint, when the array has so many elements: what is appended later goes without being kept.
     void open(std::size_t size) {

@@ -7,7 +7,7 @@
 // one vertex at infinity. Cospherical ties are broken symbolically in lexicographic order of coordinates [Devillers03], so the
 // triangulation is a function of the point set alone, cavities are star-shaped, no tetrahedron is flat, and any vertex can be removed.
 //
-// Not thread-safe, not even for reading: searches use scratch marks. Bulk insertion shares its work out itself, to views that touch nothing in common.
+// Not thread-safe, not even for reading but for locate(): searches use scratch marks. Bulk insertion shares its work out itself, to views that touch nothing in common.
 #pragma once
 
 #include <algorithm>

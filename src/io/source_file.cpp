@@ -69,6 +69,7 @@ SourceFile read_source(const std::filesystem::path& path, unsigned threads) {
     bytes.resize(used);
     if (bytes.empty()) fail_in_file(source, "the file is empty");
     if (bytes.size() >= kLargeFile && threads != 1) source.workers = std::make_unique<Workers>(threads);
+    if (source.workers && source.workers->threads() == 1) source.workers.reset();  // one core, or no more threads to be had
     return source;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -44,13 +45,15 @@ public:
         workers.for_each(stretches_.size(), [&](std::size_t s) { lines[s] = stretches_[s].count_lines(); });
         std::uint64_t line = in.line();
         for (std::size_t s = 0; s < stretches_.size(); ++s) {
-            stretches_[s].widen_to(in, line);
+            // Its last row may go on in the next one. No further: what is taken for a row may go on for ever.
+            stretches_[s].widen_to(s + 1 < stretches_.size() ? stretches_[s + 1] : in, line);
             line += lines[s].ends;
             lines_before_.push_back(lines_before_.back() + lines[s].with_tokens);
         }
     }
 
-    /// Reads those rows, `most` at most, each stretch with a tally of its own, and joins the tallies in order; `in` and `tally` end as if it had been one row after the other.
+    /// Reads those rows, `most` at most, each stretch with a tally of its own, and joins the tallies in order; `in` and `tally` end as if it had been
+    /// one row after the other.
     /// @param read  read(in, row, tally): whether there is a further row, which has been read then. Else `in` is where it was.
     /// @return how many are read. Fewer than there should be: what comes next is an error, or no row, or doesn't begin where it should.
     template <class Tally, class Read>
@@ -61,6 +64,7 @@ public:
                 outcomes[s] = read_stretch<Tally>(s, most, read);
             } catch (const MeshError&) {
                 // The outcome stays empty. Whoever reads from the row before on finds the first error of all, as without threads.
+            } catch (const std::bad_alloc&) {  // for what may have been no row: likewise
             }
         });
         std::size_t done = 0;
@@ -103,6 +107,7 @@ private:
         outcome.begin = in.place().byte;
         while (first + outcome.rows < last && read(in, first + outcome.rows, outcome.tally)) ++outcome.rows;
         stretches_[s].move_to(in.place());
+        if (in.is_used_up() && s + 1 < stretches_.size()) return {};  // a row may have ended there that does go on
         return outcome;
     }
 
@@ -115,8 +120,8 @@ private:
     std::vector<std::size_t> lines_before_{0};  // with tokens, before each stretch, and all of them
 };
 
-/// Reads rows for as long as there are any, `most` at most. Several calls of read() run at once where the file has workers, on scanners and tallies of their own;
-/// some are repeated, and of some, behind the last row, the outcome is dropped. Data, tally and errors are those of one call after the other.
+/// Reads rows for as long as there are any, `most` at most. Several calls of read() run at once where the file has workers, on scanners and tallies of
+/// their own; some are repeated, and of some, behind the last row, the outcome is dropped. Data, tally and errors are those of one call after the other.
 /// @param in  before the first row. @param tally  what rows add up to: join() of others, in order, makes it what it alone would be
 /// @param make_room  make_room(m): rows below m are about to be read
 /// @param read  as in RowStretches::read(). What it stores in the row's place, if not in the tally, may be stored again

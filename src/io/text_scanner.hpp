@@ -55,7 +55,8 @@ public:
         line_ = to.line;
     }
 
-    /// Scanners of the next stretches of the text, each of `bytes` or more, the last one perhaps fewer; all but the first begin with a line. No more than `most`.
+    /// Scanners of the next stretches of the text, each of `bytes` or more, the last one perhaps fewer; all but the first begin with a line. No more than
+    /// `most`.
     [[nodiscard]] std::vector<TextScanner> stretches(std::size_t bytes, std::size_t most) const;
     struct Lines {
         std::size_t with_tokens = 0;
@@ -65,11 +66,13 @@ public:
     [[nodiscard]] Lines count_lines() const;
     /// How many lines with tokens there are from `from` to here.
     [[nodiscard]] std::size_t count_lines_since(Place from) const;
-    /// Makes a stretch of `whole` end where that does. @param line  where it is
-    void widen_to(const TextScanner& whole, std::uint64_t line) {
-        end_ = whole.end_;
+    /// Makes a stretch end where a later one, or the whole text, does. @param line  where it begins
+    void widen_to(const TextScanner& later, std::uint64_t line) {
+        end_ = later.end_;
         line_ = line;
     }
+    /// Is there no character left?
+    [[nodiscard]] bool is_used_up() const { return cursor_ == end_; }
 
     /// Next token as a finite real. `what` completes "expected ...". @throws MeshError{bad_input}
     double real(const char* what) { return to_real(next(), what); }

@@ -10,9 +10,9 @@
 
 namespace wellmesh {
 
-/// The domain's part of the mesh, vertices renumbered in order of insertion; ghosts, holes and the outside are left behind. The mesh is used up: it need not be
+/// The domain's part of the mesh, input vertices in the input's order, the others along a curve; ghosts, holes and the outside are left behind. The mesh is used up: it need not be
 /// there twice.
-/// @param look  is called before that, with the tetrahedra in the order of the output
+/// @param look  is called while the mesh is still whole, with the tetrahedra in the order of the output
 [[nodiscard]] TetMesh extract_mesh(ConformingMesh&& mesh, Workers& workers, const std::function<void(const std::vector<TetId>& order)>& look);
 /// Leaves the mesh as it is.
 [[nodiscard]] inline TetMesh extract_mesh(const ConformingMesh& mesh) {

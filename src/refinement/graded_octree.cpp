@@ -116,11 +116,12 @@ std::vector<LatticePoint> GradedOctree::lattice(Workers& workers) const {
         p.first_corner = std::exchange(listed, listed + p.corners.size());
     }
     std::vector<Corner> corners(listed);
-    workers.for_each(pieces.size(), [&](std::size_t p) { std::copy(pieces[p].corners.begin(), pieces[p].corners.end(), corners.data() + pieces[p].first_corner); });
+    const auto gather = [&](const auto& of, auto* to) { std::copy(of.begin(), of.end(), to); };
+    workers.for_each(pieces.size(), [&](std::size_t p) { gather(pieces[p].corners, corners.data() + pieces[p].first_corner); });
     std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at != b.at ? a.at < b.at : a.depth > b.depth; });
     corners.erase(std::unique(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at == b.at; }), corners.end());
     auto points = make_on_huge_pages<LatticePoint>(leaves + corners.size(), workers);
-    workers.for_each(pieces.size(), [&](std::size_t p) { std::copy(pieces[p].centres.begin(), pieces[p].centres.end(), points.data() + pieces[p].first_centre); });
+    workers.for_each(pieces.size(), [&](std::size_t p) { gather(pieces[p].centres, points.data() + pieces[p].first_centre); });
     const double unit = std::ldexp(side_, -static_cast<int>(kMaxDepth));
     workers.for_ranges(corners.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;

@@ -112,7 +112,8 @@ std::vector<char> LatticeSeeder::find_clear(std::span<Seed> seeds) {
             for (std::size_t k = 0; k < block.size(); ++k) {
                 bool in_ball = false;
                 if (block[k].waits)
-                    ball_tree.query([&](const Box& b) { return !in_ball && b.squared_distance_to(block[k].point) <= 0; }, [&](std::uint32_t) { in_ball = true; });
+                    ball_tree.query([&](const Box& b) { return !in_ball && b.squared_distance_to(block[k].point) <= 0; },
+                                    [&](std::uint32_t) { in_ball = true; });
                 is_clear[begin + k] = block[k].waits && !in_ball;
             }
         }

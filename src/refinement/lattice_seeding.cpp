@@ -260,8 +260,30 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
     return may_go_on(0);
 }
 
-/// Circumspheres of tetrahedra at a subsegment or subface are at least as large as its own: splitting it is never in vain.
 bool LatticeSeeder::split_boundary(double coarseness) {
+    left_at_last_ = 0;
+    keep_last();
+    bool goes_on = split_down_to(coarseness);
+    if (last_ && guard_.has_too_many(mesh_.vertex_count())) {
+        last_->go_back();
+        boundary_.forget_waiting();
+        goes_on = false;
+    }
+    last_.reset();
+    return goes_on;
+}
+
+/// As refinement does (Refiner::keep_last): a cascade may take more vertices than are left. @pre the mesh conforms
+void LatticeSeeder::keep_last() {
+    const auto left = guard_.vertices_left(mesh_.vertex_count());
+    if (!left || *left == 0 || (last_ && *left > left_at_last_ / 2) || !guard_.can_double()) return;
+    last_.reset();  // savepoints end in the opposite order of their beginning
+    last_.emplace(mesh_);
+    left_at_last_ = *left;
+}
+
+/// Circumspheres of tetrahedra at a subsegment or subface are at least as large as its own: splitting it is never in vain.
+bool LatticeSeeder::split_down_to(double coarseness) {
     if (!split_boundary_in_zones(coarseness)) return false;
     std::vector<TetId> waiting;
     const Listening listening(mesh_, boundary_, waiting);
@@ -284,11 +306,13 @@ bool LatticeSeeder::split_boundary(double coarseness) {
         }
         boundary_.conform();
         if (!may_go_on(faces.size())) return false;
+        keep_last();
         if (segments.empty())  // facets once their outlines are done
             for (const Subface& s : faces) {
                 if (!may_go_on(faces.size())) return false;
                 boundary_.split(s, request);
                 boundary_.conform();
+                keep_last();
             }
         const bool has_split = mesh_.vertex_count() > vertices_before;
         if (!has_split && looks_at_all) return true;  // what rounding keeps from being split is left to refinement

@@ -8,11 +8,13 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "conforming/boundary_refiner.hpp"
 #include "conforming/conforming_mesh.hpp"
+#include "conforming/savepoint.hpp"
 #include "core/run_guard.hpp"
 #include "core/workers.hpp"
 #include "refinement/graded_octree.hpp"
@@ -49,8 +51,10 @@ private:
 
     enum class Outcome : std::uint8_t { inserted, encroaches, refused };
 
-    /// Down to `coarseness` times the bound. @return false if the guard said stop.
+    /// Down to `coarseness` times the bound. @return false if the guard said stop; with no more vertices than allowed, the mesh conforming.
     bool split_boundary(double coarseness);
+    bool split_down_to(double coarseness);
+    void keep_last();
     /// Most of the same, on all workers. @return false if the guard said stop.
     bool split_boundary_in_zones(double coarseness);
     void split_in_zone(double coarseness, std::vector<TetId> waiting, const std::function<bool(std::size_t)>& may_go_on);
@@ -94,6 +98,8 @@ private:
     std::vector<Face> faces_;
     std::vector<Box> face_boxes_;
     bool stopped_ = false;
+    std::optional<Savepoint> last_;    // of splitting the boundary
+    std::uint64_t left_at_last_ = 0;  // vertices
     Cavity cavity_;
     std::vector<Subsegment> encroached_segments_;
     std::vector<Subface> encroached_faces_;

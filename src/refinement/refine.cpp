@@ -188,7 +188,7 @@ void Refiner::forget_waiting() {
     boundary_.forget_waiting();
 }
 
-/// A cascade may take more vertices than are left, by hundreds: then the last copy is the result. One is made whenever half as many are left as at the
+/// A cascade may take more vertices than are left, by hundreds: then the mesh at the last savepoint is the result. One is made whenever half as many are left as at the
 /// one before, so there are few, and little is lost; where only the algorithm's own ceiling is to be feared, whenever there are twice as many.
 void Refiner::keep_last() {
     const std::uint64_t count = mesh_.vertex_count(), left = max_vertices_ ? *max_vertices_ - std::min(count, *max_vertices_) : count;

@@ -80,25 +80,27 @@ TEST(Budgets, ALimitByARepeatableClockGivesTheSameMeshTwice) {
 
 TEST(Budgets, EveryVertexBudgetIsKept) {
     const Plc plc = transformed(cube_with_internal_facet(), 2, 0, 1);
-    std::size_t meshes = 0;
-    for (std::uint64_t most = 4; most < 150; ++most) {
-        SCOPED_TRACE(most);
-        MeshOptions options;
-        options.size.edge_length = 0.1 * diagonal(plc);
-        options.seeding = Seeding::off;  // cascades at the boundary, not a lattice inside
-        options.limits.max_vertices = most;
-        const Outcome outcome = run(plc, options, {});
-        if (!outcome.result) {
-            expect_typed(outcome);
-            EXPECT_EQ(meshes, 0U);
-            continue;
+    for (const Seeding seeding : {Seeding::off, Seeding::automatic}) {
+        std::size_t meshes = 0;
+        for (std::uint64_t most = 4; most < 150; ++most) {
+            SCOPED_TRACE(fmt::format("{} vertices, {}", most, seeding == Seeding::off ? "no lattice" : "a lattice"));
+            MeshOptions options;
+            options.size.edge_length = 0.1 * diagonal(plc);
+            options.seeding = seeding;
+            options.limits.max_vertices = most;
+            const Outcome outcome = run(plc, options, {});
+            if (!outcome.result) {
+                expect_typed(outcome);
+                EXPECT_EQ(meshes, 0U);
+                continue;
+            }
+            ++meshes;
+            expect_valid(*outcome.result);
+            EXPECT_EQ(outcome.result->termination, Termination::vertex_budget_reached);
+            EXPECT_LE(outcome.result->mesh.vertices.size(), most);
         }
-        ++meshes;
-        expect_valid(*outcome.result);
-        EXPECT_EQ(outcome.result->termination, Termination::vertex_budget_reached);
-        EXPECT_LE(outcome.result->mesh.vertices.size(), most);
+        EXPECT_GT(meshes, 100U);
     }
-    EXPECT_GT(meshes, 100U);
 }
 
 /// Also where facets ask for splits that others have made superfluous by then.

@@ -110,7 +110,8 @@ TEST(LatticeSeeding, SeedsAreClearOfTheBoundaryAndFillTheRest) {
             };
             std::vector<Vec3> seeds;
             for (std::size_t i = 0; i < mesh.vertex_slots(); ++i)
-                if (mesh.info(VertexId{i}).reason == InsertionReason::lattice && mesh.triangulation().is_inserted(VertexId{i})) seeds.push_back(mesh.point(VertexId{i}));
+                if (mesh.info(VertexId{i}).reason == InsertionReason::lattice && mesh.triangulation().is_inserted(VertexId{i}))
+                    seeds.push_back(mesh.point(VertexId{i}));
             ASSERT_GT(seeds.size(), 500U);
             for (const Vec3& p : seeds) {
                 const CellId cell = mesh.cell(mesh.triangulation().locate(p, TetId{}));
