@@ -103,6 +103,26 @@ TEST(Budgets, EveryVertexBudgetIsKept) {
     }
 }
 
+/// The boundary is split for the lattice's sake, with cascades, before refinement begins to count.
+TEST(Budgets, AreKeptWhileTheBoundaryIsSplitForTheLattice) {
+    std::size_t meshes = 0;
+    for (std::uint64_t rotation = 0; rotation < 2; ++rotation) {
+        const Plc plc = transformed(stepped_shaft(), rotation, 0, 1);
+        for (std::uint64_t most = 36; most < 60; ++most) {
+            SCOPED_TRACE(fmt::format("{} vertices, rotation {}", most, rotation));
+            MeshOptions options;
+            options.size.edge_length = 0.05 * diagonal(plc);
+            options.limits.max_vertices = most;
+            const Outcome outcome = run(plc, options, {});
+            if (!outcome.result) continue;
+            ++meshes;
+            expect_valid(*outcome.result);
+            EXPECT_LE(outcome.result->mesh.vertices.size(), most);
+        }
+    }
+    EXPECT_GT(meshes, 24U);
+}
+
 /// Also where facets ask for splits that others have made superfluous by then.
 TEST(Budgets, AsManyVerticesAsConformityTakesAreEnough) {
     std::size_t split = 0;
