@@ -232,6 +232,8 @@ public:
         for (const auto& of_dimension : names.of_dimension)
             for (const auto& [marker, name] : of_dimension) bytes_ += fmt::format("{}={}\n", marker, name);
     }
+    template <class... Parts>
+    void add_all(const Parts&... parts) { (add(parts), ...); }
     [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
 private:
@@ -246,30 +248,16 @@ std::string read(const std::filesystem::path& path, Kind kind, unsigned threads)
             reading.add(read_points(path, options));
         } else if (kind == Kind::mesh) {
             const TetMesh mesh = read_mesh(path, options);
-            reading.add(mesh.vertices);
-            reading.add(mesh.vertex_markers);
-            reading.add(mesh.tets);
-            reading.add(mesh.tet_regions);
-            reading.add(mesh.subfaces);
-            reading.add(mesh.subface_facets);
-            reading.add(mesh.subface_markers);
-            reading.add(mesh.relative_rounding);
+            reading.add_all(mesh.vertices, mesh.vertex_markers, mesh.tets, mesh.tet_regions, mesh.subfaces, mesh.subface_facets, mesh.subface_markers,
+                            mesh.relative_rounding, mesh.names);
         } else {
             const Plc plc = read_plc(path, options);
-            reading.add(plc.vertices);
-            reading.add(plc.vertex_lines);
-            reading.add(plc.vertex_markers);
-            reading.add(plc.facet_lines);
-            reading.add(plc.relative_rounding);
+            reading.add_all(plc.vertices, plc.vertex_lines, plc.vertex_markers, plc.facet_lines, plc.relative_rounding, plc.names);
             for (const PlcFacet& facet : plc.facets) {
                 reading.add(facet.marker);
                 for (const auto& polygon : facet.polygons) reading.add(polygon);
             }
-            for (const PlcSegment& segment : plc.segments) {
-                reading.add(segment.vertices);
-                reading.add(segment.marker);
-            }
-            reading.add(plc.names);
+            for (const PlcSegment& segment : plc.segments) reading.add_all(segment.vertices, segment.marker);
         }
     } catch (const MeshError& error) {
         return std::string("error: ") + error.what();
