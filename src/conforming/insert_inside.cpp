@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <numeric>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
 #include "core/check.hpp"
+#include "delaunay/known_tets.hpp"
 
 namespace wellmesh {
 namespace {
@@ -153,28 +153,65 @@ bool ConformingMesh::is_encroached_at(TetId t, const Vec3& p) const {
     return false;
 }
 
-std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<const Vec3> points, InsertionReason reason,
+std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<const Vec3> points, std::span<const char> waits, InsertionReason reason,
                                                     const std::function<bool(const Vec3&, CellId)>& is_welcome, const std::function<bool()>& may_go_on,
                                                     std::vector<VertexId>& encroaching) {
-    WELLMESH_CHECK(Stage::refine, frames_.empty());
     const std::size_t first = tri_.vertex_count();
     tri_.reserve(first + points.size());
     info_.reserve(first + points.size() + points.size() / 8);
-    for (const Vec3& p : points) {
-        (void)tri_.add_point(p);
+    std::vector<VertexId> order;
+    order.reserve(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const VertexId v = tri_.add_point(points[i]);
         info_.push_back({.carrier = CarrierKind::region, .reason = reason});
+        if (waits.empty() || waits[i] == 0) order.push_back(v);
     }
-    std::vector<std::uint32_t> order(points.size());
-    std::iota(order.begin(), order.end(), static_cast<std::uint32_t>(first));
+    return insert_inside(workers, order, is_welcome, may_go_on, encroaching);
+}
+
+std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<const VertexId> vertices, const std::function<bool(const Vec3&, CellId)>& is_welcome,
+                                                    const std::function<bool()>& may_go_on, std::vector<VertexId>& encroaching) {
+    WELLMESH_CHECK(Stage::refine, frames_.empty());
     InsideObserver observer(*this, workers, is_welcome, may_go_on);
+    std::vector<std::uint32_t> order(vertices.size());
+    std::transform(vertices.begin(), vertices.end(), order.begin(), [](VertexId v) { return v.value(); });
     std::vector<VertexId> left;
     const std::vector<std::uint32_t> refused = tri_.insert_on(workers, order, &observer);
     encroaching = std::move(observer.encroaching());
     std::sort(encroaching.begin(), encroaching.end());
     for (const std::uint32_t v : refused)
         if (!std::binary_search(encroaching.begin(), encroaching.end(), VertexId{v})) left.push_back(VertexId{v});
-    for (std::size_t v = first; v < info_.size(); ++v) vertex_count_ += tri_.is_inserted(VertexId{v});
+    for (const VertexId v : vertices) vertex_count_ += tri_.is_inserted(v);
     return left;
+}
+
+bool ConformingMesh::insert_known(Workers& workers, const KnownTets& known, std::span<const VertexId> fresh) {
+    WELLMESH_CHECK(Stage::refine, frames_.empty());
+    KnownRegion region;
+    if (!tri_.find_region(known, region)) return false;
+    std::vector<CellId> cell_of;  // by group
+    for (std::size_t i = 0; i < region.tets.size(); ++i) {
+        const TetId t = region.tets[i];
+        if (region.group[i] >= cell_of.size()) cell_of.resize(region.group[i] + 1);
+        CellId& cell = cell_of[region.group[i]];
+        if (!cell.valid()) cell = cell_[t.index()];
+        if (has_labels(t) || cell_[t.index()] != cell || cell == unknown_cell()) return false;
+    }
+    tri_.replace_region(workers, known, region);
+    fit_arrays(workers);
+    workers.for_each(known.pieces(), [&](std::size_t piece) {
+        const bool only_one = cell_of.size() == 1;
+        std::vector<KnownTets::Tet> tets;
+        if (!only_one) known.list(piece, tets);
+        for (std::size_t first = known.first(piece), n = first; n < known.first(piece + 1); ++n) {
+            const std::size_t t = region.tets[n].index();
+            cell_[t] = cell_of[only_one ? 0 : tets[n - first].group];
+            record_[t] = 0;
+        }
+    });
+    for (const VertexId v : fresh) info_[v.index()].carrier_id = cell_[tri_.tet_of(v).index()].value();
+    vertex_count_ += fresh.size();
+    return true;
 }
 
 void ConformingMesh::insert_known(VertexId v, const Cavity& cavity, const Placement& where) {

@@ -70,6 +70,8 @@ struct Hole {
 
 class Zones;
 struct ZoneViews;
+class KnownTets;
+struct KnownRegion;
 
 /// Takes part in bulk insertion.
 class BulkObserver {
@@ -156,6 +158,12 @@ public:
     /// with v as corner 3, or as corner 2 of a ghost.
     void insert_vertex(VertexId v, const Cavity& cavity);
     [[nodiscard]] const std::vector<TetId>& new_tets() const { return new_tets_; }
+
+    // --- known tetrahedra instead of those that are there (replace_region.cpp)
+    /// What lies within the rim. @return false: the rim is not all there, or encloses a vertex that none of the known ones has
+    bool find_region(const KnownTets& known, KnownRegion& region);
+    /// Known tetrahedron n becomes region.tets[n]. @param region  as find_region() left it, and nothing has changed since
+    void replace_region(Workers& workers, const KnownTets& known, KnownRegion& region);
 
     // --- several workers at once (insert_in_zones.cpp)
     /// Inserts stored points, all but duplicates and those that `observer` refuses, on all workers. The tetrahedra are those of insertion one by one, their

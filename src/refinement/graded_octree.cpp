@@ -76,59 +76,99 @@ void GradedOctree::balance() {
     }
 }
 
-std::vector<LatticePoint> GradedOctree::lattice(Workers& workers) const {
+double GradedOctree::smallest_side() const {
+    unsigned deepest = 0;
+    for (const Node& n : nodes_) deepest = std::max<unsigned>(deepest, n.depth);
+    return std::ldexp(side_, -static_cast<int>(deepest));
+}
+
+std::vector<LatticePoint> GradedOctree::lattice(Workers& workers, LatticeLeaves& out) const {
     // Corners as cells of the grid of the greatest depth, so that those of different leaves are told to be the same exactly.
     constexpr unsigned kBits = kMaxDepth + 1;
     constexpr std::size_t kGrain = std::size_t{1} << 14;
     static_assert(3 * kBits <= 64);
+    constexpr std::uint32_t kNone = LatticeLeaves::kNone;
     struct Corner {
         std::uint64_t at = 0;  // three coordinates, the first one in front
         std::uint32_t depth = 0;
+        std::uint32_t lowest_of = kNone;  // leaf
     };
     struct Piece {
-        std::vector<LatticePoint> centres;
+        std::vector<std::uint32_t> nodes;
         std::vector<Corner> corners;
-        std::size_t first_centre = 0, first_corner = 0;
+        std::size_t first_leaf = 0, first_corner = 0;
     };
     std::vector<Piece> pieces((nodes_.size() + kGrain - 1) / kGrain);
     workers.for_ranges(nodes_.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t which) {
-        Piece& piece = pieces[which];
-        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
-            const Node& n = nodes_[i];
-            if (n.first_child != 0 || !n.used) continue;
-            const Box b = box(i);
-            piece.centres.push_back({{b.lo.x + b.side / 2, b.lo.y + b.side / 2, b.lo.z + b.side / 2}, b.side});
-            const unsigned shift = kMaxDepth - n.depth;
-            for (std::uint32_t k = 0; k < 8; ++k) {
-                const std::array<std::uint32_t, 3> at{n.at[0] + (k & 1U), n.at[1] + ((k >> 1) & 1U), n.at[2] + (k >> 2)};
-                // It is the first corner of the leaf beyond, if that is one of the same size: so most corners are listed once.
-                if (k > 0 && std::max({at[0], at[1], at[2]}) < (1U << n.depth)) {
-                    const Node& beyond = nodes_[find(n.depth, at)];
-                    if (beyond.used && beyond.first_child == 0 && beyond.depth == n.depth) continue;
-                }
-                piece.corners.push_back({std::uint64_t{at[0] << shift} << (2 * kBits) | std::uint64_t{at[1] << shift} << kBits | at[2] << shift, n.depth});
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
+            if (is_leaf(i) && nodes_[i].used) pieces[which].nodes.push_back(i);
+    });
+    std::size_t count = 0, listed = 0;
+    for (Piece& p : pieces) p.first_leaf = std::exchange(count, count + p.nodes.size());
+    out.leaves.assign(count, {});
+    out.of_node.assign(nodes_.size(), kNone);
+    workers.for_each(pieces.size(), [&](std::size_t which) {
+        for (std::size_t k = 0; k < pieces[which].nodes.size(); ++k) out.of_node[pieces[which].nodes[k]] = static_cast<std::uint32_t>(pieces[which].first_leaf + k);
+    });
+    workers.for_each(pieces.size(), [&](std::size_t which) {
+        for (std::size_t k = 0; k < pieces[which].nodes.size(); ++k) {
+            const std::uint32_t node = pieces[which].nodes[k];
+            const Node& n = nodes_[node];
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                std::array<std::uint32_t, 3> at = n.at;
+                if (++at[axis] >= (1U << n.depth)) continue;
+                const std::uint32_t above = (n.at[axis] & 1U) == 0 ? node + (1U << axis) : find(n.depth, at);  // a sibling, for one of two
+                const std::uint32_t leaf = out.of_node[above];
+                if (leaf == kNone || nodes_[above].depth != n.depth) continue;
+                const auto here = static_cast<std::uint32_t>(pieces[which].first_leaf + k);
+                out.leaves[here].beyond[axis][1] = leaf;
+                out.leaves[leaf].beyond[axis][0] = here;
             }
         }
     });
-    std::size_t leaves = 0, listed = 0;
-    for (Piece& p : pieces) {
-        p.first_centre = std::exchange(leaves, leaves + p.centres.size());
-        p.first_corner = std::exchange(listed, listed + p.corners.size());
-    }
+    workers.for_each(pieces.size(), [&](std::size_t which) {
+        Piece& piece = pieces[which];
+        for (std::size_t i = 0; i < piece.nodes.size(); ++i) {
+            const Node& n = nodes_[piece.nodes[i]];
+            const unsigned shift = kMaxDepth - n.depth;
+            for (std::uint32_t k = 0; k < 8; ++k) {
+                // It is the lowest corner of the leaf beyond, if that is one of the same size: so most corners are listed once.
+                auto leaf = static_cast<std::uint32_t>(piece.first_leaf + i);
+                for (unsigned axis = 0; axis < 3 && leaf != kNone; ++axis)
+                    if ((k >> axis & 1U) != 0) leaf = out.leaves[leaf].beyond[axis][1];
+                if (k > 0 && leaf != kNone) continue;
+                const std::array<std::uint64_t, 3> at{std::uint64_t{n.at[0] + (k & 1U)} << shift, std::uint64_t{n.at[1] + ((k >> 1) & 1U)} << shift,
+                                                      std::uint64_t{n.at[2] + (k >> 2)} << shift};
+                piece.corners.push_back({at[0] << (2 * kBits) | at[1] << kBits | at[2], n.depth, leaf});
+            }
+        }
+    });
+    for (Piece& p : pieces) p.first_corner = std::exchange(listed, listed + p.corners.size());
     std::vector<Corner> corners(listed);
-    const auto gather = [&](const auto& of, auto* to) { std::copy(of.begin(), of.end(), to); };
-    workers.for_each(pieces.size(), [&](std::size_t p) { gather(pieces[p].corners, corners.data() + pieces[p].first_corner); });
+    workers.for_each(pieces.size(), [&](std::size_t p) {
+        std::copy(pieces[p].corners.begin(), pieces[p].corners.end(), corners.begin() + static_cast<std::ptrdiff_t>(pieces[p].first_corner));
+    });
     std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at != b.at ? a.at < b.at : a.depth > b.depth; });
-    corners.erase(std::unique(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at == b.at; }), corners.end());
-    auto points = make_on_huge_pages<LatticePoint>(leaves + corners.size(), workers);
-    workers.for_each(pieces.size(), [&](std::size_t p) { gather(pieces[p].centres, points.data() + pieces[p].first_centre); });
+    std::size_t kept = 0;
+    for (const Corner& c : corners) {
+        if (kept == 0 || corners[kept - 1].at != c.at) corners[kept++] = c;
+        if (c.lowest_of != kNone) out.leaves[c.lowest_of].corner = static_cast<std::uint32_t>(count + kept - 1);
+    }
+    corners.resize(kept);
+    auto points = make_on_huge_pages<LatticePoint>(count + kept, workers);
+    workers.for_each(pieces.size(), [&](std::size_t p) {
+        for (std::size_t k = 0; k < pieces[p].nodes.size(); ++k) {
+            const Box b = box(pieces[p].nodes[k]);
+            points[pieces[p].first_leaf + k] = {{b.lo.x + b.side / 2, b.lo.y + b.side / 2, b.lo.z + b.side / 2}, b.side};
+        }
+    });
     const double unit = std::ldexp(side_, -static_cast<int>(kMaxDepth));
-    workers.for_ranges(corners.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+    workers.for_ranges(kept, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
         const auto along = [&](double lo, std::uint64_t cells) { return lo + static_cast<double>(cells & kMask) * unit; };
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint64_t at = corners[i].at;
-            points[leaves + i] = {{along(lo_.x, at >> (2 * kBits)), along(lo_.y, at >> kBits), along(lo_.z, at)},
+            points[count + i] = {{along(lo_.x, at >> (2 * kBits)), along(lo_.y, at >> kBits), along(lo_.z, at)},
                                   std::ldexp(side_, -static_cast<int>(corners[i].depth))};
         }
     });

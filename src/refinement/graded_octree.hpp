@@ -21,6 +21,17 @@ struct LatticePoint {
     double spacing = 0;  ///< lattice constant at this place: side of the (smallest) leaf that it belongs to
 };
 
+/// The used leaves and their place in the lattice: the centre of leaf i is its point i.
+struct LatticeLeaves {
+    static constexpr std::uint32_t kNone = 0xffffffffU;
+    struct Leaf {
+        std::array<std::array<std::uint32_t, 2>, 3> beyond{{{kNone, kNone}, {kNone, kNone}, {kNone, kNone}}};  ///< by axis: the leaf of the same size below, above
+        std::uint32_t corner = kNone;                                                                          ///< its lowest one: a point of the lattice
+    };
+    std::vector<Leaf> leaves;
+    std::vector<std::uint32_t> of_node;  ///< by node of the tree; kNone if it is no used leaf
+};
+
 class GradedOctree {
 public:
     static constexpr unsigned kMaxDepth = 20;
@@ -43,10 +54,29 @@ public:
     void use(std::uint32_t leaf) { nodes_[leaf].used = true; }
     /// Splits leaves until those that share a corner with a used one differ from it by at most one level.
     void balance();
-    /// Corners and centres of the used leaves, each once, in an order that depends on the tree alone.
-    [[nodiscard]] std::vector<LatticePoint> lattice(Workers& workers) const;
+    /// Corners and centres of the used leaves, each once, in an order that depends on the tree alone. @param leaves  gets these leaves
+    [[nodiscard]] std::vector<LatticePoint> lattice(Workers& workers, LatticeLeaves& leaves) const;
+    /// Calls visit(node) for each leaf that meets the closed box from lo to hi.
+    template <class Visit>
+    void visit_leaves(const Vec3& lo, const Vec3& hi, Visit&& visit) const {
+        visit_leaves(0, lo_, side_, lo, hi, visit);
+    }
+    /// Of the smallest leaf.
+    [[nodiscard]] double smallest_side() const;
 
 private:
+    template <class Visit>
+    void visit_leaves(std::uint32_t node, const Vec3& at, double side, const Vec3& lo, const Vec3& hi, Visit& visit) const {
+        const std::uint32_t first = nodes_[node].first_child;
+        if (first == 0) return visit(node);
+        const double half = side / 2;
+        const Vec3 middle{at.x + half, at.y + half, at.z + half};
+        for (std::uint32_t k = 0; k < 8; ++k) {
+            const bool x = (k & 1U) != 0, y = (k & 2U) != 0, z = (k & 4U) != 0;
+            if ((x ? hi.x < middle.x : lo.x > middle.x) || (y ? hi.y < middle.y : lo.y > middle.y) || (z ? hi.z < middle.z : lo.z > middle.z)) continue;
+            visit_leaves(first + k, {x ? middle.x : at.x, y ? middle.y : at.y, z ? middle.z : at.z}, half, lo, hi, visit);
+        }
+    }
     struct Node {
         std::array<std::uint32_t, 3> at{};  // in units of the node's own side
         std::uint32_t first_child = 0;

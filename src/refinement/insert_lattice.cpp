@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <thread>
 
 #include "conforming/place_point.hpp"
@@ -12,6 +13,7 @@
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/spatial_order.hpp"
+#include "refinement/lattice_filling.hpp"
 #include "refinement/lattice_seeding.hpp"
 
 namespace wellmesh {
@@ -21,6 +23,9 @@ namespace {
 constexpr double kClearance = 0.5;
 /// Of the lattice constant: takes exact symmetry away, costs nothing in shape.
 constexpr double kLatticeJitter = 1e-4;
+/// Of seeds that go in without being asked about one by one: those whose tetrahedra are known.
+constexpr char kKnown = 2;
+constexpr std::size_t kBoxGrain = std::size_t{1} << 12;
 
 /// Squared distance from p to the triangle: to its plane if the foot of the perpendicular lies inside, else to the nearest edge.
 double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -50,20 +55,37 @@ std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<Latti
     workers_.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t k = begin; k < end; ++k) {
             const LatticePoint& p = lattice[order[k]];
-            seeds[k] = {flush_to_exact_range(p.point + (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1)),
-                        p.spacing};
+            seeds[k] = {flush_to_exact_range(p.point + (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1)), order[k]};
         }
     });
     return seeds;
 }
 
+/// What seeds keep away from.
+struct LatticeSeeder::Boundary {
+    std::vector<Face> faces;
+    std::vector<Box> boxes;  ///< of the faces, then vertices
+    BoxTree tree;
+    std::vector<Box> balls;  ///< about acute vertices
+    double widest = 0;  ///< no seed keeps farther away; infinite where that is not known beforehand
+};
+
 /// On all workers first: whether seeds are clear of the boundary, and encroach upon it, does not depend on what else is there. Then those in balls,
 /// in their order.
-bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
+/// @param lattice  when all seeds are to go in: those far from everything else need not be inserted, as their tetrahedra are known
+bool LatticeSeeder::insert_seeds(std::span<Seed> seeds, const Lattice* lattice) {
     // A limit on vertices depends on the order.
     std::vector<char> in_bulk(seeds.size(), 0);
+    std::optional<LatticeFilling> filling;
     if (!guard_.has_too_many(mesh_.vertex_count() + seeds.size())) {
-        in_bulk = find_clear(seeds);
+        const Boundary boundary = find_boundary();
+        in_bulk = find_clear(boundary, seeds);
+        if (lattice != nullptr) {
+            filling.emplace(lattice->tree, lattice->leaves, occupied(boundary, lattice->tree.smallest_side()), workers_);
+            const std::vector<char> is_far = filling->far_points(seeds.size());
+            for (std::size_t k = 0; k < seeds.size(); ++k)
+                if (in_bulk[k] != 0 && is_far[seeds[k].number] != 0) in_bulk[k] = kKnown;
+        }
         return_freed_memory();
         if (!insert_in_bulk(seeds, in_bulk)) return false;
     }
@@ -72,36 +94,68 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds) {
         Seed& s = seeds[k];
         if (!s.waits || in_bulk[k] != 0) continue;
         if (!may_go_on(seeds.size())) return false;
-        const Outcome outcome = insert(s.point, near);
+        s.vertex = VertexId{};
+        const Outcome outcome = insert(s.point, near, s.vertex);
         s.waits = outcome == Outcome::encroaches;  // finer boundaries are encroached by fewer
         inserted_ += outcome == Outcome::inserted;
     }
-    return true;
+    return !filling || fill(seeds, in_bulk, *filling);
 }
 
-/// What seeds keep away from.
-struct LatticeSeeder::Boundary {
-    std::vector<Face> faces;
-    std::vector<Box> boxes;  ///< of the faces, then vertices
-    BoxTree tree;
-    double widest = 0;  ///< no seed keeps farther away; infinite where that is not known beforehand
-};
-
-/// Which seeds are in a cell that wants them, clear of the boundary, and in no ball about an acute vertex: balls give way one by one. Those that are
-/// not clear wait no longer.
-std::vector<char> LatticeSeeder::find_clear(std::span<Seed> seeds) {
-    // Neighbours along the curve are looked at together: most of them are far from the boundary, all at once.
-    constexpr std::size_t kBlock = 32, kBlocks = 32;
+LatticeSeeder::Boundary LatticeSeeder::find_boundary() {
     std::vector<Face> faces = list_faces();
     std::vector<Box> boxes = boxes_of(faces);
     for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v)  // those of facets lie in them
         if (mesh_.info(VertexId{v}).carrier == CarrierKind::segment || mesh_.info(VertexId{v}).carrier == CarrierKind::input_vertex)
             boxes.push_back({mesh_.point(VertexId{v}), mesh_.point(VertexId{v})});
     BoxTree tree(boxes, workers_);
-    Boundary boundary{std::move(faces), std::move(boxes), std::move(tree)};
+    Boundary boundary{std::move(faces), std::move(boxes), std::move(tree), {}, 0};
     for (const double radius : radius_) boundary.widest = std::max(boundary.widest, sizes_.varies() ? kInfinity : radius < kInfinity ? kClearance * radius : 0);
-    const std::vector<Box> balls = boundary_.acute().boxes_of_balls();
-    const BoxTree ball_tree(balls, workers_);
+    boundary.balls = boundary_.acute().boxes_of_balls();
+    return boundary;
+}
+
+/// Boxes around all that must not come near a star of the lattice's: what is no seed, and the space in which a seed would encroach.
+std::vector<Box> LatticeSeeder::occupied(const Boundary& boundary, double least_spacing) const {
+    std::vector<Box> out = boundary.boxes;
+    out.insert(out.end(), boundary.balls.begin(), boundary.balls.end());
+    workers_.for_ranges(boundary.faces.size(), kBoxGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const auto& [a, b, c] = boundary.faces[f].corners;
+            double radius = 0;
+            (void)circumcentre(mesh_.point(a), mesh_.point(b), mesh_.point(c), &radius);
+            // Points that far from the box, in lattice constants, are kept away anyhow.
+            if (!(radius <= least_spacing)) out[f] = out[f].grown(radius < kInfinity ? radius : 0);
+        }
+    });
+    for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v) {
+        const VertexInfo& info = mesh_.info(VertexId{v});
+        if (info.carrier == CarrierKind::region && info.reason != InsertionReason::lattice) out.push_back({mesh_.point(VertexId{v}), mesh_.point(VertexId{v})});
+    }
+    const auto& segments = mesh_.plc().segments;
+    if (std::any_of(segments.begin(), segments.end(), [](const auto& s) { return s.facets.empty(); }))
+        for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
+            const TetId t{i};
+            if (!mesh_.has_labels(t) || !mesh_.tets().is_finite(t)) continue;
+            for (unsigned e = 0; e < 6; ++e) {
+                const SegmentId s = mesh_.labels(t).segments[e];
+                if (!s.valid() || !segments[s.index()].facets.empty()) continue;
+                const Vec3 &a = mesh_.point(mesh_.tets().corner(t, kEdgeCorners[e][0])), &b = mesh_.point(mesh_.tets().corner(t, kEdgeCorners[e][1]));
+                Box box;
+                box.add(a);
+                box.add(b);
+                out.push_back(box.grown(distance(a, b) / 2));
+            }
+        }
+    return out;
+}
+
+/// Which seeds are in a cell that wants them, clear of the boundary, and in no ball about an acute vertex: balls give way one by one. Those that are
+/// not clear wait no longer.
+std::vector<char> LatticeSeeder::find_clear(const Boundary& boundary, std::span<Seed> seeds) {
+    // Neighbours along the curve are looked at together: most of them are far from the boundary, all at once.
+    constexpr std::size_t kBlock = 32, kBlocks = 32;
+    const BoxTree ball_tree(boundary.balls, workers_);
     std::vector<char> is_clear(seeds.size(), 0);
     workers_.for_ranges(seeds.size(), kBlock * kBlocks, [&](std::size_t begin, std::size_t end, std::size_t) {
         TetId near{};
@@ -166,38 +220,100 @@ void LatticeSeeder::find_clear_of(const Boundary& boundary, std::span<Seed> bloc
     }
 }
 
+/// @param which  0: not in bulk; kKnown: gets a number only
 bool LatticeSeeder::insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which) {
     std::vector<Vec3> points;
+    std::vector<char> waits;
     std::vector<std::uint32_t> numbers;
-    const auto count = static_cast<std::size_t>(std::count(which.begin(), which.end(), 1));
+    const auto count = seeds.size() - static_cast<std::size_t>(std::count(which.begin(), which.end(), 0));
     points.reserve(count);
+    waits.reserve(count);
     numbers.reserve(count);
-    for (std::size_t k = 0; k < seeds.size(); ++k)
-        if (which[k] != 0) {
-            points.push_back(seeds[k].point);
-            numbers.push_back(static_cast<std::uint32_t>(k));
-        }
+    for (std::size_t k = 0; k < seeds.size(); ++k) {
+        if (which[k] == 0) continue;
+        seeds[k].vertex = VertexId{mesh_.vertex_slots() + points.size()};
+        points.push_back(seeds[k].point);
+        waits.push_back(which[k] == kKnown);
+        numbers.push_back(static_cast<std::uint32_t>(k));
+    }
+    return insert_in_bulk(seeds, numbers, [&](const Welcomes& is_welcome, const GoesOn& goes_on, std::vector<VertexId>& encroaching) {
+        return mesh_.insert_inside(workers_, points, waits, InsertionReason::lattice, is_welcome, goes_on, encroaching);
+    });
+}
+
+/// @param numbers  of the seeds, ascending by vertex  @param insert_all  calls insert_inside() of the mesh
+template <class InsertAll>
+bool LatticeSeeder::insert_in_bulk(std::span<Seed> seeds, std::span<const std::uint32_t> numbers, InsertAll&& insert_all) {
     const auto caller = std::this_thread::get_id();
     std::atomic<bool> stopped{false};
-    const auto goes_on = [&] {
-        if (std::this_thread::get_id() == caller && !may_go_on(points.size())) stopped = true;
+    const GoesOn goes_on = [&] {
+        if (std::this_thread::get_id() == caller && !may_go_on(numbers.size())) stopped = true;
         return !stopped.load();
     };
-    const auto is_welcome = [this](const Vec3& p, CellId c) { return radius_at(p, c) < kInfinity; };
-    const std::size_t first = mesh_.vertex_slots(), before = mesh_.vertex_count();
+    const Welcomes is_welcome = [this](const Vec3& p, CellId c) { return radius_at(p, c) < kInfinity; };
+    const std::size_t before = mesh_.vertex_count();
     std::vector<VertexId> encroaching;
-    const std::vector<VertexId> left = mesh_.insert_inside(workers_, points, InsertionReason::lattice, is_welcome, goes_on, encroaching);
+    const std::vector<VertexId> left = insert_all(is_welcome, goes_on, encroaching);
     inserted_ += mesh_.vertex_count() - before;
+    const auto seed_of = [&](VertexId v) -> Seed& {
+        return seeds[*std::lower_bound(numbers.begin(), numbers.end(), v, [&](std::uint32_t k, VertexId w) { return seeds[k].vertex < w; })];
+    };
     for (const std::uint32_t k : numbers) seeds[k].waits = false;
-    for (const VertexId v : encroaching) seeds[numbers[v.index() - first]].waits = true;
+    for (const VertexId v : encroaching) seed_of(v).waits = true;
     TetId near{};
     for (const VertexId v : left) {
-        if (stopped || !may_go_on(points.size())) return false;
-        const Outcome outcome = insert(mesh_.point(v), near, v);
-        seeds[numbers[v.index() - first]].waits = outcome == Outcome::encroaches;
+        if (stopped || !may_go_on(numbers.size())) return false;
+        Seed& s = seed_of(v);
+        const Outcome outcome = insert(s.point, near, s.vertex);
+        s.waits = outcome == Outcome::encroaches;
         inserted_ += outcome == Outcome::inserted;
     }
     return !stopped;
+}
+
+/// Puts the lattice's tetrahedra where they are known. @param in_bulk  by seed: those that are kKnown were left for this
+bool LatticeSeeder::fill(std::span<Seed> seeds, const std::vector<char>& in_bulk, LatticeFilling& filling) {
+    std::vector<VertexId> vertex_of(seeds.size());
+    std::vector<std::uint32_t> seed_of(seeds.size());
+    std::vector<char> is_known = filling.far_points(seeds.size()), is_there(seeds.size());
+    const auto is_inserted = [&](const Seed& s) { return s.vertex.valid() && mesh_.triangulation().is_inserted(s.vertex); };
+    for (std::uint32_t k = 0; k < seeds.size(); ++k) {
+        const std::uint32_t p = seeds[k].number;
+        vertex_of[p] = seeds[k].vertex;
+        seed_of[p] = k;
+        is_there[p] = in_bulk[k] == kKnown || is_inserted(seeds[k]);
+        is_known[p] = is_known[p] != 0 && is_there[p] != 0;
+    }
+    const auto insert_these = [&](std::vector<std::uint32_t> numbers) {
+        std::sort(numbers.begin(), numbers.end(), [&](std::uint32_t a, std::uint32_t b) { return seeds[a].vertex < seeds[b].vertex; });
+        std::vector<VertexId> vertices;
+        for (const std::uint32_t k : numbers) vertices.push_back(seeds[k].vertex);
+        return insert_in_bulk(seeds, numbers, [&](const Welcomes& is_welcome, const GoesOn& goes_on, std::vector<VertexId>& encroaching) {
+            return mesh_.insert_inside(workers_, vertices, is_welcome, goes_on, encroaching);
+        });
+    };
+    for (std::vector<std::uint32_t> lack = filling.short_of_neighbours(is_known, is_there); !lack.empty(); lack = filling.short_of_neighbours(is_known, is_there)) {
+        std::vector<std::uint32_t> numbers;
+        for (const std::uint32_t p : lack) {
+            is_known[p] = 0;
+            if (!is_inserted(seeds[seed_of[p]])) numbers.push_back(seed_of[p]);
+        }
+        if (!insert_these(numbers)) return false;
+        for (const std::uint32_t k : numbers) is_there[seeds[k].number] = is_inserted(seeds[k]);
+    }
+    std::vector<std::uint32_t> rest;
+    std::vector<VertexId> fresh;
+    for (std::uint32_t k = 0; k < seeds.size(); ++k)
+        if (is_known[seeds[k].number] != 0 && !is_inserted(seeds[k])) {
+            rest.push_back(k);
+            fresh.push_back(seeds[k].vertex);
+        }
+    if (fresh.empty()) return true;
+    if (!may_go_on(fresh.size())) return false;
+    filling.know(is_known, vertex_of, mesh_.vertex_slots());
+    if (!mesh_.insert_known(workers_, filling, fresh)) return insert_these(std::move(rest));
+    inserted_ += fresh.size();
+    return true;
 }
 
 /// The vertex nearest to p is a corner of its cavity; the nearest subface need not be a face of it (p may lie beside an edge or a corner of the
@@ -217,8 +333,8 @@ bool LatticeSeeder::is_clear(const Vec3& p, double clearance) const {
     return true;
 }
 
-/// @param known  a vertex that is stored at p, to be inserted; invalid: a new one
-LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near, VertexId known) {
+/// @param vertex  one that is stored at p, to be inserted; invalid: a new one, which this becomes
+LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near, VertexId& vertex) {
     Triangulation& tri = mesh_.triangulation();
     near = tri.locate(p, near);
     const CellId cell = mesh_.cell(near);
@@ -231,9 +347,9 @@ LatticeSeeder::Outcome LatticeSeeder::insert(const Vec3& p, TetId& near, VertexI
     boundary_.find_encroached(cavity_, where, encroached_segments_, encroached_faces_);
     if (!encroached_segments_.empty() || !encroached_faces_.empty()) return Outcome::encroaches;
     if (!boundary_.makes_room(cavity_, InsertionReason::lattice)) return Outcome::refused;
-    if (known.valid()) mesh_.insert_known(known, cavity_, where);
-    else known = mesh_.insert(cavity_, where, {.reason = InsertionReason::lattice});
-    near = tri.tet_of(known);
+    if (vertex.valid()) mesh_.insert_known(vertex, cavity_, where);
+    else vertex = mesh_.insert(cavity_, where, {.reason = InsertionReason::lattice});
+    near = tri.tet_of(vertex);
     return Outcome::inserted;
 }
 

@@ -427,14 +427,21 @@ std::uint64_t LatticeSeeder::seed() {
     // From coarse to fine: vertices on an empty domain's boundary would all be neighbours of each other.
     constexpr double kCoarsest = 8;
     if (!split_boundary(kCoarsest)) return 0;
-    std::vector<Seed> seeds = seeds_of(find_lattice(base));
+    std::optional<Lattice> lattice = find_lattice(base);
+    if (!lattice) return 0;
+    std::vector<Seed> seeds = seeds_of(lattice->points);
+    std::vector<LatticePoint>().swap(lattice->points);
     for (double coarseness = kCoarsest; coarseness >= 1; coarseness /= 2) {
         if (!split_boundary(coarseness)) break;
         mesh_.pack_records(workers_);
         // As many as the coarse mesh would have.
         const auto share = static_cast<std::size_t>(static_cast<double>(seeds.size()) / (coarseness * coarseness * coarseness));
-        const bool goes_on = insert_seeds({seeds.data(), share});
-        if (coarseness == 1) std::vector<Seed>().swap(seeds);  // memory is short while tetrahedra are numbered
+        const bool is_last = coarseness == 1;
+        const bool goes_on = insert_seeds({seeds.data(), share}, is_last ? &*lattice : nullptr);
+        if (is_last) {  // memory is short while tetrahedra are numbered
+            std::vector<Seed>().swap(seeds);
+            lattice.reset();
+        }
         return_freed_memory();
         mesh_.renumber_tets(workers_);  // what comes next goes by ids
         if (!goes_on) break;
@@ -442,13 +449,14 @@ std::uint64_t LatticeSeeder::seed() {
     return inserted_;
 }
 
-std::vector<LatticePoint> LatticeSeeder::find_lattice(double base) {
+std::optional<LatticeSeeder::Lattice> LatticeSeeder::find_lattice(double base) {
     Vec3 lo, hi;
     bounding_box(mesh_.plc().vertices, lo, hi);
     const double extent = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
     double side = base;
     while (side < extent) side *= 2;
-    GradedOctree tree(0.5 * (lo + hi) - 0.5 * Vec3{side, side, side}, side);
+    std::optional<Lattice> out(Lattice{GradedOctree(0.5 * (lo + hi) - 0.5 * Vec3{side, side, side}, side), {}, {}});
+    GradedOctree& tree = out->tree;
     faces_ = list_faces();
     face_boxes_ = boxes_of(faces_);
     std::vector<std::uint32_t> all(faces_.size());
@@ -456,7 +464,8 @@ std::vector<LatticePoint> LatticeSeeder::find_lattice(double base) {
     build(tree, 0, all, TetId{});
     if (stopped_) return {};
     tree.balance();
-    return tree.lattice(workers_);
+    out->points = tree.lattice(workers_, out->leaves);
+    return out;
 }
 
 }  // namespace wellmesh

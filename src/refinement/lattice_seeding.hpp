@@ -23,6 +23,8 @@
 
 namespace wellmesh {
 
+class LatticeFilling;
+
 /// Circumradius of the tetrahedra of the bcc lattice, over the lattice constant.
 inline const double kLatticeCircumradius = std::sqrt(5.0) / 4;
 /// The lattice's circumradii over the bound: at 1 the jitter makes every second one too large, and below 0.95 vertices are wasted (docs/decisions/0011).
@@ -63,20 +65,34 @@ private:
     void list_all_too_large(double coarseness, std::vector<TetId>& which, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     bool list_too_large(TetId t, double coarseness, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const;
     [[nodiscard]] bool may_go_on(std::uint64_t waiting) { return guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting) == RunGuard::Verdict::go_on; }
-    [[nodiscard]] std::vector<LatticePoint> find_lattice(double base);
+    /// Where its points would be, and those themselves.
+    struct Lattice {
+        GradedOctree tree;
+        LatticeLeaves leaves;
+        std::vector<LatticePoint> points;
+    };
+    [[nodiscard]] std::optional<Lattice> find_lattice(double base);
     /// A point of the lattice that waits, moved by its jitter.
     struct Seed {
         Vec3 point{};
-        double spacing = 0;
+        std::uint32_t number = 0;  ///< of the lattice's points
+        VertexId vertex{};         ///< once it has been one, inserted or not
         bool waits = true;
     };
+    using Welcomes = std::function<bool(const Vec3&, CellId)>;
+    using GoesOn = std::function<bool()>;
     [[nodiscard]] std::vector<Seed> seeds_of(const std::vector<LatticePoint>& lattice);
-    bool insert_seeds(std::span<Seed> seeds);
-    [[nodiscard]] std::vector<char> find_clear(std::span<Seed> seeds);
+    bool insert_seeds(std::span<Seed> seeds, const Lattice* lattice);
     struct Boundary;
+    [[nodiscard]] Boundary find_boundary();
+    [[nodiscard]] std::vector<Box> occupied(const Boundary& boundary, double least_spacing) const;
+    [[nodiscard]] std::vector<char> find_clear(const Boundary& boundary, std::span<Seed> seeds);
     void find_clear_of(const Boundary& boundary, std::span<Seed> block, TetId& near, std::vector<std::uint32_t>& candidates) const;
     bool insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which);
-    Outcome insert(const Vec3& p, TetId& near, VertexId known = {});
+    template <class InsertAll>
+    bool insert_in_bulk(std::span<Seed> seeds, std::span<const std::uint32_t> numbers, InsertAll&& insert_all);
+    bool fill(std::span<Seed> seeds, const std::vector<char>& in_bulk, LatticeFilling& filling);
+    Outcome insert(const Vec3& p, TetId& near, VertexId& vertex);
     [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double spacing_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double radius_bound(TetId t, const Vec3& p) const;

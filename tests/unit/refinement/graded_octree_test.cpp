@@ -20,7 +20,8 @@ void split_all(GradedOctree& tree, unsigned levels) {
 
 std::vector<LatticePoint> lattice_of(const GradedOctree& tree) {
     Workers workers;
-    return tree.lattice(workers);
+    LatticeLeaves leaves;
+    return tree.lattice(workers, leaves);
 }
 
 std::vector<std::uint32_t> leaves(const GradedOctree& tree) {

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Known tetrahedra take the place of what fills their region. Their rim must be there already: the triangulation of some of the points has every Delaunay tetrahedron
+// of all of them that has no other corners, and nothing but these lies outside of the rim.
+#include <algorithm>
+#include <bit>
+
+#include "core/rng.hpp"
+#include "delaunay/known_tets.hpp"
+#include "delaunay/triangulation.hpp"
+
+namespace wellmesh {
+namespace {
+
+/// Numbers of faces by their corners.
+class FaceTable {
+public:
+    FaceTable(std::span<const KnownTets::RimFace> faces, std::span<const char> known) : faces_(faces), role_(known.begin(), known.end()), slots_(std::bit_ceil(2 * faces.size() + 1), kNone) {
+        for (std::size_t r = 0; r < faces.size(); ++r) {
+            for (const VertexId v : faces[r].corners) role_[v.index()] = kOnRim;
+            std::size_t at = place_of(faces[r].corners);
+            while (slots_[at] != kNone) at = next(at);
+            slots_[at] = static_cast<std::uint32_t>(r);
+        }
+    }
+    static constexpr std::uint32_t kNone = 0xffffffffU;
+    /// Of the vertices of known tetrahedra.
+    [[nodiscard]] bool is_known(VertexId v) const { return role_[v.index()] != 0; }
+    [[nodiscard]] bool is_on_rim(VertexId v) const { return role_[v.index()] == kOnRim; }
+    [[nodiscard]] std::uint32_t find(const std::array<VertexId, 3>& corners) const {
+        if (!is_on_rim(corners[0]) || !is_on_rim(corners[1]) || !is_on_rim(corners[2])) return kNone;
+        for (std::size_t at = place_of(corners); slots_[at] != kNone; at = next(at))
+            if (std::is_permutation(corners.begin(), corners.end(), faces_[slots_[at]].corners.begin())) return slots_[at];
+        return kNone;
+    }
+
+private:
+    [[nodiscard]] std::size_t place_of(std::array<VertexId, 3> c) const {
+        std::sort(c.begin(), c.end());
+        return mix64(std::uint64_t{c[0].value()} << 32 | c[1].value(), c[2].value()) & (slots_.size() - 1);
+    }
+    [[nodiscard]] std::size_t next(std::size_t at) const { return (at + 1) & (slots_.size() - 1); }
+
+    std::span<const KnownTets::RimFace> faces_;
+    static constexpr char kOnRim = 2;
+    std::vector<char> role_;  // by vertex
+    std::vector<std::uint32_t> slots_;
+};
+
+bool same_side(const std::array<VertexId, 3>& a, const std::array<VertexId, 3>& b) {
+    const auto first = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
+    return b[(first + 1) % 3] == a[1];
+}
+
+}  // namespace
+
+bool Triangulation::find_region(const KnownTets& known, KnownRegion& region) {
+    const std::span<const KnownTets::RimFace> rim = known.rim();
+    const FaceTable table(rim, known.has_vertex());
+    region.tets.clear();
+    region.group.clear();
+    region.outside.assign(rim.size(), TetFace{});
+    next_epoch();
+    std::vector<TetId> stack;
+    const auto enter = [&](TetId t) {
+        mark_[t.index()] = epoch_;
+        stack.push_back(t);
+    };
+    for (std::size_t r = 0; r < rim.size(); ++r) {
+        if (region.outside[r].valid()) continue;
+        const auto& [a, b, c] = rim[r].corners;
+        if (!is_inserted(a) || !is_inserted(b) || !is_inserted(c)) return false;
+        TetFace start = find_face(a, b, c);
+        if (!start.valid()) return false;
+        if (!same_side(tets_.face_corners(start), rim[r].corners)) start = tets_.across(start);
+        if (mark_[start.tet().index()] == epoch_) return false;  // it would have been met
+        for (enter(start.tet()); !stack.empty();) {
+            const TetId t = stack.back();
+            stack.pop_back();
+            if (tets_.is_ghost(t)) return false;
+            for (const VertexId v : tets_.corners(t))
+                if (!table.is_known(v)) return false;
+            region.tets.push_back(t);
+            region.group.push_back(rim[r].group);
+            for (unsigned f = 0; f < 4; ++f) {
+                const TetFace beyond = tets_.across(t, f);
+                const std::array<VertexId, 3> corners = tets_.face_corners(TetFace{t, f});
+                if (const std::uint32_t met = table.find(corners); met != FaceTable::kNone) {
+                    if (!same_side(corners, rim[met].corners)) return false;
+                    region.outside[met] = beyond;
+                } else if (mark_[beyond.tet().index()] != epoch_) {
+                    enter(beyond.tet());
+                }
+            }
+        }
+    }
+    return true;
+}
+
+void Triangulation::replace_region(Workers& workers, const KnownTets& known, KnownRegion& region) {
+    const std::size_t count = known.count();
+    while (region.tets.size() > count) {
+        tets_.release(region.tets.back());
+        region.tets.pop_back();
+    }
+    std::vector<TetId> more = tets_.take_slots(count - region.tets.size()).list();
+    region.tets.insert(region.tets.end(), more.rbegin(), more.rend());
+    const auto face_of = [&](std::uint32_t packed) { return TetFace{region.tets[packed >> 2], packed & 3U}; };
+    workers.for_each(known.pieces(), [&](std::size_t piece) {
+        std::vector<KnownTets::Tet> tets;
+        known.list(piece, tets);
+        std::size_t n = known.first(piece);
+        for (const KnownTets::Tet& tet : tets) {
+            std::array<TetFace, 4> across;
+            for (unsigned f = 0; f < 4; ++f)
+                across[f] = (tet.across[f] & KnownTets::kRimBit) != 0 ? region.outside[tet.across[f] & ~KnownTets::kRimBit] : face_of(tet.across[f]);
+            const TetId t = region.tets[n++];
+            tets_.set(t, tet.corners, across);
+            for (unsigned k = 0; k < 4; ++k)
+                if ((tet.homes >> k & 1U) != 0) vertices_[tet.corners[k].index()].tet = t;
+        }
+    });
+    for (std::size_t r = 0; r < region.outside.size(); ++r) {
+        const KnownTets::RimFace& face = known.rim()[r];
+        tets_.set_across(region.outside[r], face_of(face.owner));
+        for (const VertexId v : face.corners) vertices_[v.index()].tet = region.outside[r].tet();
+    }
+    last_located_ = TetId{};
+}
+
+}  // namespace wellmesh
