@@ -102,6 +102,7 @@ void Triangulation::replace_region(Workers& workers, const KnownTets& known, Kno
         tets_.release(region.tets.back());
         region.tets.pop_back();
     }
+    std::sort(region.tets.begin(), region.tets.end());
     std::vector<TetId> more = tets_.take_slots(count - region.tets.size()).list();
     region.tets.insert(region.tets.end(), more.rbegin(), more.rend());
     const auto face_of = [&](std::uint32_t packed) { return TetFace{region.tets[packed >> 2], packed & 3U}; };

@@ -310,8 +310,12 @@ bool LatticeSeeder::fill(std::span<Seed> seeds, const std::vector<char>& in_bulk
         }
     if (fresh.empty()) return true;
     if (!may_go_on(fresh.size())) return false;
+    // Numbers first, while there are few: known tetrahedra get theirs in an order of their own.
+    return_freed_memory();
+    mesh_.renumber_tets(workers_);
     filling.know(is_known, vertex_of, mesh_.vertex_slots());
     if (!mesh_.insert_known(workers_, filling, fresh)) return insert_these(std::move(rest));
+    tets_are_numbered_ = true;
     inserted_ += fresh.size();
     return true;
 }

@@ -443,7 +443,7 @@ std::uint64_t LatticeSeeder::seed() {
             lattice.reset();
         }
         return_freed_memory();
-        mesh_.renumber_tets(workers_);  // what comes next goes by ids
+        if (!tets_are_numbered_) mesh_.renumber_tets(workers_);  // what comes next goes by ids
         if (!goes_on) break;
     }
     return inserted_;

@@ -114,6 +114,7 @@ private:
     std::vector<Face> faces_;
     std::vector<Box> face_boxes_;
     bool stopped_ = false;
+    bool tets_are_numbered_ = false;  // by what does not depend on threads
     std::optional<Savepoint> last_;    // of splitting the boundary
     std::uint64_t left_at_last_ = 0;  // vertices
     Cavity cavity_;
