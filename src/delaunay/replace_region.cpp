@@ -59,10 +59,10 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region) {
     region.tets.clear();
     region.group.clear();
     region.outside.assign(rim.size(), TetFace{});
-    next_epoch();
+    std::vector<char> is_within(tets_.slots(), 0);  // marks of searches won't do: find_face() leaves its own
     std::vector<TetId> stack;
     const auto enter = [&](TetId t) {
-        mark_[t.index()] = epoch_;
+        is_within[t.index()] = 1;
         stack.push_back(t);
     };
     for (std::size_t r = 0; r < rim.size(); ++r) {
@@ -72,7 +72,7 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region) {
         TetFace start = find_face(a, b, c);
         if (!start.valid()) return false;
         if (!same_side(tets_.face_corners(start), rim[r].corners)) start = tets_.across(start);
-        if (mark_[start.tet().index()] == epoch_) return false;  // it would have been met
+        if (is_within[start.tet().index()] != 0) return false;  // it would have been met
         for (enter(start.tet()); !stack.empty();) {
             const TetId t = stack.back();
             stack.pop_back();
@@ -87,7 +87,7 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region) {
                 if (const std::uint32_t met = table.find(corners); met != FaceTable::kNone) {
                     if (!same_side(corners, rim[met].corners)) return false;
                     region.outside[met] = beyond;
-                } else if (mark_[beyond.tet().index()] != epoch_) {
+                } else if (is_within[beyond.tet().index()] == 0) {
                     enter(beyond.tet());
                 }
             }

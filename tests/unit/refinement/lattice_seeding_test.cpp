@@ -131,6 +131,32 @@ TEST(LatticeSeeding, SeedsAreClearOfTheBoundaryAndFillTheRest) {
         }
 }
 
+/// Inside each of them the lattice's tetrahedra are put in as they are known to be.
+TEST(LatticeSeeding, SeparatePartsAreFilledEach) {
+    Plc plc = cube();
+    const Plc other = cube();
+    const auto first = static_cast<std::uint32_t>(plc.vertices.size());
+    for (const Vec3& p : other.vertices) plc.vertices.push_back(0.7 * p + Vec3{1.5, 0.2, 0.1});
+    for (PlcFacet facet : other.facets) {
+        for (auto& polygon : facet.polygons)
+            for (auto& v : polygon) v += first;
+        plc.facets.push_back(facet);
+    }
+    for (const unsigned threads : {1U, 3U}) {
+        const MeshOptions options = sized(0.07);
+        StagedMesh staged(plc, options);
+        Workers workers(threads);
+        staged.conform();
+        Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+        EXPECT_GT(LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), workers).seed(), 3000U);
+        EXPECT_EQ(staged.problem(false), "");
+        std::map<CellId, double> volumes = staged.cell_volumes();
+        double sum = 0;
+        for (const auto& [cell, volume] : volumes) sum += volume;
+        EXPECT_NEAR(sum, 1 + 0.7 * 0.7 * 0.7, 1e-9);
+    }
+}
+
 TEST(LatticeSeeding, WhereNothingIsAskedNothingChanges) {
     for (const Seeding seeding : {Seeding::automatic, Seeding::off}) {
         MeshOptions options;
