@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "conforming/place_point.hpp"
+#include "core/check.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 
@@ -100,6 +101,7 @@ double AcuteGeometry::ball_radius(VertexId v) {
     if (!any_ || v.index() >= acute_deg_.size() || acute_deg_[v.index()] == 180) return 0;
     double& r = ball_[v.index()];
     if (r < 0) {
+        WELLMESH_CHECK(Stage::refine, feature_size_.has_value());
         r = (*feature_size_)(point(v)) / 3;
         if (!std::isfinite(r)) r = 0;
     }
@@ -108,9 +110,11 @@ double AcuteGeometry::ball_radius(VertexId v) {
 
 void AcuteGeometry::find_balls() {
     for (std::size_t v = 0; v < acute_deg_.size(); ++v) (void)ball_radius(VertexId{v});
+    feature_size_.reset();  // half a kilobyte a facet, which nobody asks any more
 }
 
 std::vector<Box> AcuteGeometry::boxes_of_balls() {
+    find_balls();
     std::vector<Box> out;
     for (std::size_t v = 0; v < acute_deg_.size(); ++v) {
         const double r = ball_radius(VertexId{v});

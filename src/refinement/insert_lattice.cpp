@@ -55,7 +55,7 @@ std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<Latti
     workers_.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t k = begin; k < end; ++k) {
             const LatticePoint& p = lattice[order[k]];
-            seeds[k] = {flush_to_exact_range(p.point + (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1)), order[k]};
+            seeds[k] = {flush_to_exact_range(p.point + (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1)), {}, order[k] & 0x7fffffffU};
         }
     });
     return seeds;
@@ -73,7 +73,7 @@ struct LatticeSeeder::Boundary {
 /// On all workers first: whether seeds are clear of the boundary, and encroach upon it, does not depend on what else is there. Then those in balls,
 /// in their order.
 /// @param lattice  when all seeds are to go in: those far from everything else need not be inserted, as their tetrahedra are known
-bool LatticeSeeder::insert_seeds(std::span<Seed> seeds, const Lattice* lattice) {
+bool LatticeSeeder::insert_seeds(std::span<Seed> seeds, Lattice* lattice) {
     // A limit on vertices depends on the order.
     std::vector<char> in_bulk(seeds.size(), 0);
     std::optional<LatticeFilling> filling;
@@ -81,7 +81,9 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds, const Lattice* lattice) 
         const Boundary boundary = find_boundary();
         in_bulk = find_clear(boundary, seeds);
         if (lattice != nullptr) {
-            filling.emplace(lattice->tree, lattice->leaves, occupied(boundary, lattice->tree.smallest_side()), workers_);
+            filling.emplace(*lattice->tree, lattice->leaves, occupied(boundary, lattice->tree->smallest_side()), workers_);
+            lattice->tree.reset();  // memory is short when all tetrahedra are there
+            std::vector<std::uint32_t>().swap(lattice->leaves.of_node);
             const std::vector<char> is_far = filling->far_points(seeds.size());
             for (std::size_t k = 0; k < seeds.size(); ++k)
                 if (in_bulk[k] != 0 && is_far[seeds[k].number] != 0) in_bulk[k] = kKnown;
@@ -310,8 +312,10 @@ bool LatticeSeeder::fill(std::span<Seed> seeds, const std::vector<char>& in_bulk
         }
     if (fresh.empty()) return true;
     if (!may_go_on(fresh.size())) return false;
-    // Numbers first, while there are few: known tetrahedra get theirs in an order of their own.
+    std::vector<std::uint32_t>().swap(seed_of);
+    std::vector<char>().swap(is_there);
     return_freed_memory();
+    // Numbers first, while there are few: known tetrahedra get theirs in an order of their own.
     mesh_.renumber_tets(workers_);
     filling.know(is_known, vertex_of, mesh_.vertex_slots());
     if (!mesh_.insert_known(workers_, filling, fresh)) return insert_these(std::move(rest));

@@ -456,7 +456,7 @@ std::optional<LatticeSeeder::Lattice> LatticeSeeder::find_lattice(double base) {
     double side = base;
     while (side < extent) side *= 2;
     std::optional<Lattice> out(Lattice{GradedOctree(0.5 * (lo + hi) - 0.5 * Vec3{side, side, side}, side), {}, {}});
-    GradedOctree& tree = out->tree;
+    GradedOctree& tree = *out->tree;
     faces_ = list_faces();
     face_boxes_ = boxes_of(faces_);
     std::vector<std::uint32_t> all(faces_.size());

@@ -67,7 +67,7 @@ private:
     [[nodiscard]] bool may_go_on(std::uint64_t waiting) { return guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting) == RunGuard::Verdict::go_on; }
     /// Where its points would be, and those themselves.
     struct Lattice {
-        GradedOctree tree;
+        std::optional<GradedOctree> tree;
         LatticeLeaves leaves;
         std::vector<LatticePoint> points;
     };
@@ -75,14 +75,15 @@ private:
     /// A point of the lattice that waits, moved by its jitter.
     struct Seed {
         Vec3 point{};
-        std::uint32_t number = 0;  ///< of the lattice's points
-        VertexId vertex{};         ///< once it has been one, inserted or not
-        bool waits = true;
+        VertexId vertex{};              ///< once it has been one, inserted or not
+        std::uint32_t number : 31 = 0;  ///< of the lattice's points
+        std::uint32_t waits : 1 = 1;
     };
+    static_assert(sizeof(Seed) == 32);
     using Welcomes = std::function<bool(const Vec3&, CellId)>;
     using GoesOn = std::function<bool()>;
     [[nodiscard]] std::vector<Seed> seeds_of(const std::vector<LatticePoint>& lattice);
-    bool insert_seeds(std::span<Seed> seeds, const Lattice* lattice);
+    bool insert_seeds(std::span<Seed> seeds, Lattice* lattice);
     struct Boundary;
     [[nodiscard]] Boundary find_boundary();
     [[nodiscard]] std::vector<Box> occupied(const Boundary& boundary, double least_spacing) const;

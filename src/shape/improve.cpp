@@ -63,9 +63,13 @@ double ShapeImprover::badness_of(TetId t) {
 }
 
 /// For marks that no vertex has yet.
-std::uint64_t ShapeImprover::new_stamp() {
+std::uint32_t ShapeImprover::new_stamp() {
+    if (++stamp_ == 0) {
+        marked_.clear();
+        stamp_ = 1;
+    }
     marked_.resize(std::max(marked_.size(), mesh_.vertex_slots()), 0);
-    return mending_.tick();
+    return stamp_;
 }
 
 /// What an acute angle of the input forces is given its chance to move, but no splits: they would not end. What is in a gap has none.
@@ -126,7 +130,7 @@ RunGuard::Verdict ShapeImprover::passes(unsigned samples, unsigned most, LastRes
 /// Moves the vertices near bad tetrahedra to their optimal-Delaunay points, once each.
 RunGuard::Verdict ShapeImprover::smooth_around_bad(unsigned rings) {
     std::vector<VertexId> around;
-    const std::uint64_t stamp = new_stamp();
+    const std::uint32_t stamp = new_stamp();
     const auto take = [&](VertexId v) {
         if (v == kInfiniteVertex || marked_[v.index()] == stamp) return;
         marked_[v.index()] = stamp;
@@ -171,7 +175,7 @@ RunGuard::Verdict ShapeImprover::settle(LastResort last_resort) {
 /// Splits what is worse than this: of neighbours only the worst, as moves may mend the others then.
 RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
     std::sort(left().begin(), left().end(), [](const Bad& a, const Bad& b) { return b < a; });
-    const std::uint64_t stamp = new_stamp();
+    const std::uint32_t stamp = new_stamp();
     const std::size_t first_new = mesh_.vertex_slots();
     for (const Bad& b : left()) {
         if (b.badness <= cosine) break;

@@ -88,7 +88,7 @@ private:
     [[nodiscard]] bool is_left_alone(TetId t) const;
     void leave_forced_alone();
     [[nodiscard]] std::vector<Bad>& left() { return mending_.left(); }
-    [[nodiscard]] std::uint64_t new_stamp();
+    [[nodiscard]] std::uint32_t new_stamp();
     [[nodiscard]] double worst_cosine() const;
 
     ConformingMesh& mesh_;
@@ -105,7 +105,8 @@ private:
 
     bool leaves_forced_ = false;
     std::uint64_t splits_ = 0;
-    std::vector<std::uint64_t> marked_;           // per vertex: stamp of the last collection that it belongs to
+    std::vector<std::uint32_t> marked_;           // per vertex: stamp of the last collection that it belongs to
+    std::uint32_t stamp_ = 0;                     // of the last collection
     std::unordered_set<std::uint64_t> given_up_;  // by corners: tetrahedra that no rung mended
     std::uint64_t splitting_ = 0;                 // the tetrahedron that is being split, by its corners
     std::vector<TetId> star_;

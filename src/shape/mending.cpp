@@ -54,6 +54,12 @@ void Mending::begin_anew() {
     tried_.assign(tried_.size(), Tried{});
 }
 
+void Mending::forget_tries() {
+    stuck_ = {};
+    tried_.release();
+    touched_.release();
+}
+
 /// Mostly it is found faster than the badness that it is not.
 bool Mending::is_bad(TetId t, double& how) const {
     if (!judge_.counts(t) || (!goes_beyond_shape && judge_.is_surely_good(t))) return false;

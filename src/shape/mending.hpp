@@ -43,6 +43,8 @@ public:
 
     /// Forgets what was tried.
     void begin_anew();
+    /// The same, and gives the memory back. @pre nothing waits for a pass
+    void forget_tries();
     /// All that is bad now, in left().
     void collect(Workers& workers);
     /// Begins a pass: what is left waits again.
@@ -65,8 +67,6 @@ public:
     [[nodiscard]] std::size_t count() const { return left_.size() + heap_.size(); }
     /// May the surroundings of this one be smoothed once more?
     [[nodiscard]] bool may_smooth(const Bad& bad);  ///< not of a view
-    /// A moment later than all before.
-    std::uint64_t tick() { return ++clock_; }
 
     /// The same for a view of a zone. @pre the whole one is not used before join()
     [[nodiscard]] Mending for_zone(ConformingMesh& view, const TetJudge& judge, VertexMover& mover);

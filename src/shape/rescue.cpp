@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/resident_memory.hpp"
 #include "shape/corners.hpp"
 #include "shape/improve.hpp"
 
@@ -85,6 +86,10 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
 
 /// Takes superfluous vertices out. What excuses a tetrahedron beside an acute angle may have been one of them.
 RunGuard::Verdict ShapeImprover::thin_out(std::size_t first_new, std::size_t enough) {
+    // Memory is short: what is undone is kept, too.
+    mending_.forget_tries();
+    std::vector<std::uint32_t>().swap(marked_);
+    return_freed_memory();
     if (!refiner_.may_excuse()) return thinning_.run(first_new, enough);
     if (!guard_.can_double()) return RunGuard::Verdict::go_on;
     Savepoint last(mesh_);
