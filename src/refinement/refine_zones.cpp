@@ -78,7 +78,7 @@ void Refiner::drain_in_zones() {
     constexpr std::size_t kLeastAZone = 256, kSampleAZone = 512;
     // Of ten that wait, nine are gone once one of them is split. A vertex takes seven tetrahedra, or less; who finds no room waits for the next turn.
     // One in four of them may have labels.
-    constexpr std::size_t kWaitingPerVertex = 6, kTetsPerVertex = 8, kRecordsPerVertex = 2, kMoreVertices = 64, kMoreRecords = 512;
+    constexpr std::size_t kWaitingPerVertex = 5, kTetsPerVertex = 8, kRecordsPerVertex = 2, kMoreVertices = 64, kMoreRecords = 512;
     boundary_.prepare_for_zones();
     for (unsigned turn = 0; turn < Zones::kTurns && may_work_in_zones(); ++turn) {
         const auto is_there = [&](const BadTetQueue::Entry& e) { return mesh_.tets().is_finite(e.tet) && BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) == e.fingerprint; };

@@ -9,6 +9,7 @@ namespace wellmesh {
 namespace {
 
 constexpr unsigned kTriesUntouched = 3;  // failures after which a tetrahedron rests until its neighbourhood changes
+constexpr std::uint32_t kLastTime = 1U << 31;
 constexpr unsigned kTriesInAll = 4;      // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 
 }  // namespace
@@ -109,6 +110,10 @@ void Mending::touch(const std::vector<TetId>& tets) {
 
 void Mending::begin_pass() {
     ++pass_;
+    if (clock_ > kLastTime) {
+        forget_tries();
+        clock_ = 0;
+    }
     fit_arrays();
     heap_.insert(heap_.end(), left_.begin(), left_.end());
     left_.clear();
@@ -151,7 +156,7 @@ void Mending::end_pass() {
 
 /// Done: the tetrahedron is gone, or not to be tried now.
 Mending::Outcome Mending::mend(const Bad& bad, unsigned samples) {
-    std::uint64_t last_change = 0;
+    std::uint32_t last_change = 0;
     for (const VertexId v : bad.corners) last_change = std::max(last_change, touched_[v.index()]);
     const std::uint64_t key = key_of(bad.corners);
     if (Stuck* const before = find_stuck(key)) {

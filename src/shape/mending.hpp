@@ -43,7 +43,7 @@ public:
 
     /// Forgets what was tried.
     void begin_anew();
-    /// The same, and gives the memory back. @pre nothing waits for a pass
+    /// The same, and when stars changed; gives the memory back.
     void forget_tries();
     /// All that is bad now, in left().
     void collect(Workers& workers);
@@ -78,14 +78,14 @@ private:
         bool operator()(const Bad& a, const Bad& b) const { return a.block != b.block ? a.block > b.block : a < b; }
     };
     struct Stuck {
-        std::uint64_t when = 0;
+        std::uint32_t when = 0;
         std::uint32_t pass = 0;
         unsigned failures = 0;                      // since its neighbourhood changed last
         unsigned smoothings = 0, last_resorts = 0;  // in all
     };
     /// Moves of a vertex that failed since its star changed last.
     struct Tried {
-        std::uint64_t when = 0;
+        std::uint32_t when = 0;
         std::uint32_t pass = 0, failures = 0;
     };
     enum class Outcome : std::uint8_t { done, failed, left_zone };
@@ -100,9 +100,9 @@ private:
     const TetJudge& judge_;
     VertexMover& mover_;
     Blocks blocks_;
-    std::uint64_t clock_ = 0;
+    std::uint32_t clock_ = 0;  // begins again on its way to overflow, between passes; if one pass got there, something would be tried again, or not
     std::uint32_t pass_ = 0;
-    SharedArray<std::uint64_t> touched_;               // per vertex: when its star changed last
+    SharedArray<std::uint32_t> touched_;               // per vertex: when its star changed last
     SharedArray<Tried> tried_;                         // per vertex
     std::unordered_map<std::uint64_t, Stuck> stuck_;   // by corners; each is looked up, in no order
     const std::unordered_map<std::uint64_t, Stuck>* known_ = nullptr;  // of a view: what the whole knew

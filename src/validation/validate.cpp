@@ -186,6 +186,7 @@ void ValidPlcBuilder::drop_outside(const LineQuery& lines, const CellMap& map) {
     std::vector<ElementRef> facets_dropped, segments_dropped;
     std::vector<FacetId> number(out.facets.size());
     std::vector<ValidFacet> kept;
+    kept.reserve(out.facets.size());
     for (std::size_t f = 0; f < out.facets.size(); ++f) {
         ValidFacet& facet = out.facets[f];
         if (std::any_of(facet.cells.begin(), facet.cells.end(), [&](CellId c) { return out.cells[c.index()].filled; })) {
@@ -198,6 +199,7 @@ void ValidPlcBuilder::drop_outside(const LineQuery& lines, const CellMap& map) {
     out.facets = std::move(kept);
     std::vector<SegmentId> segment_number(out.segments.size());
     std::vector<ValidSegment> segments;
+    segments.reserve(out.segments.size());
     for (std::size_t s = 0; s < out.segments.size(); ++s) {
         ValidSegment& segment = out.segments[s];
         const bool had_facets = !segment.facets.empty();
