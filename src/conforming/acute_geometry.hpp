@@ -42,12 +42,12 @@ public:
 
     /// Boxes about all balls, empty ones left out.
     [[nodiscard]] std::vector<Box> boxes_of_balls();
-    /// Finds all radii, so that several threads may ask for them.
+    /// Finds all radii, so that several threads may ask for them, and forgets what they follow from.
     void find_balls();
 
     /// Half of it, where a size is asked for that is finer than the ball.
     void halve_ball(VertexId v) { ball_[v.index()] /= 2; }
-    /// All radii, as far as they are known, for an undo.
+    /// All radii, for an undo. @pre find_balls() was called
     [[nodiscard]] const std::vector<double>& balls() const { return ball_; }
     void set_balls(const std::vector<double>& radii) { ball_ = radii; }
 

@@ -158,7 +158,8 @@ public:
     VertexId insert(const Cavity& cavity, const Placement& where, const VertexInfo& info);
     /// Adds vertices inside cells, all that encroach upon nothing, on all workers. All get numbers, in their order; @pre there is no savepoint
     /// those that did not go in are not inserted, insert_known() may still do it. Ids of tetrahedra depend on the number of workers. Insertion lengths are not noted.
-    /// @param points  in biased_spatial_order(), none of them a vertex's  @param waits  by point: it gets a number, no more; empty: none does  @param is_welcome  may there be a vertex in this cell? From any thread.
+    /// @param points  in biased_spatial_order(), none of them a vertex's  @param waits  by point: it gets a number, no more; empty: none does
+    /// @param is_welcome  may there be a vertex in this cell? From any thread.
     /// @param may_go_on  asked now and then, from any thread
     /// @param encroaching  gets the vertices that would encroach upon a subface or subsegment  @return the others that are not in
     std::vector<VertexId> insert_inside(Workers& workers, std::span<const Vec3> points, std::span<const char> waits, InsertionReason reason,
@@ -167,9 +168,10 @@ public:
     /// Inserts those of such vertices that it can, in their order. @return as above
     std::vector<VertexId> insert_inside(Workers& workers, std::span<const VertexId> vertices, const std::function<bool(const Vec3&, CellId)>& is_welcome,
                                         const std::function<bool()>& may_go_on, std::vector<VertexId>& encroaching);
-    /// The same of vertices whose tetrahedra are known. @param fresh  such vertices, whose whole stars are known  @return false, with nothing changed: what is there doesn't
-    /// allow it (Triangulation::find_region), or has labels, or several cells within one rim. @pre there is no savepoint
-    bool insert_known(Workers& workers, const KnownTets& known, std::span<const VertexId> fresh);
+    /// Known tetrahedra take the place of those that are there. @param fresh  vertices that have a number, and whose whole stars are known  @param goes_on  as of
+    /// Triangulation::find_region  @return false, with nothing changed: that refuses, or what is there has labels, or several cells within one rim.
+    /// @pre there is no savepoint
+    bool put_known_tets(Workers& workers, const KnownTets& known, std::span<const VertexId> fresh, const std::function<bool()>& goes_on);
     /// Inserts such a vertex. @param where  in a cell
     void insert_known(VertexId v, const Cavity& cavity, const Placement& where);
     /// Ids of tetrahedra that depend on the mesh alone; all ids from before are void. @pre nothing is broken or forgotten, and there is no savepoint

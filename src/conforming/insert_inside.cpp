@@ -185,10 +185,10 @@ std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<
     return left;
 }
 
-bool ConformingMesh::insert_known(Workers& workers, const KnownTets& known, std::span<const VertexId> fresh) {
+bool ConformingMesh::put_known_tets(Workers& workers, const KnownTets& known, std::span<const VertexId> fresh, const std::function<bool()>& goes_on) {
     WELLMESH_CHECK(Stage::refine, frames_.empty());
     KnownRegion region;
-    if (!tri_.find_region(known, region)) return false;
+    if (!tri_.find_region(known, region, goes_on)) return false;
     std::vector<CellId> cell_of;  // by group
     for (std::size_t i = 0; i < region.tets.size(); ++i) {
         const TetId t = region.tets[i];

@@ -33,6 +33,10 @@ std::uint64_t RunGuard::memory() const { return control_->resident_bytes ? contr
 
 bool RunGuard::can_double() const { return !limits_.memory_bytes || memory() <= *limits_.memory_bytes / 2; }
 
+bool RunGuard::has_room_for(std::uint64_t bytes) const {
+    return !limits_.memory_bytes || kPeakOverRefinement * static_cast<double>(memory() + bytes) <= static_cast<double>(*limits_.memory_bytes);
+}
+
 RunGuard::Verdict RunGuard::look(std::uint64_t vertices, std::uint64_t tets, std::uint64_t unmet) {
     const Clock::time_point time = now();
     const auto since = time - last_look_;

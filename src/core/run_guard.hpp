@@ -70,6 +70,8 @@ public:
     /// Whether there is memory for another copy of all that the process holds: savepoints, which may come to keep as much as the mesh holds, are left
     /// out otherwise.
     [[nodiscard]] bool can_double() const;
+    /// Whether so much more may be taken at once, as poll() would judge afterwards.
+    [[nodiscard]] bool has_room_for(std::uint64_t bytes) const;
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -17,6 +17,7 @@ namespace wellmesh {
 class KnownTets {
 public:
     static constexpr std::uint32_t kRimBit = 0x80000000U;
+    static constexpr std::size_t kMost = kRimBit / 4;  ///< so many numbers leave that bit free
     struct Tet {
         TetStore::Corners corners{};            ///< positive
         std::array<std::uint32_t, 4> across{};  ///< the neighbour's number times 4, plus its face; or with kRimBit the number of a rim face

@@ -14,7 +14,8 @@ namespace {
 /// Numbers of faces by their corners.
 class FaceTable {
 public:
-    FaceTable(std::span<const KnownTets::RimFace> faces, std::span<const char> known) : faces_(faces), role_(known.begin(), known.end()), slots_(std::bit_ceil(2 * faces.size() + 1), kNone) {
+    FaceTable(std::span<const KnownTets::RimFace> faces, std::span<const char> known)
+        : faces_(faces), role_(known.begin(), known.end()), slots_(std::bit_ceil(2 * faces.size() + 1), kNone) {
         for (std::size_t r = 0; r < faces.size(); ++r) {
             for (const VertexId v : faces[r].corners) role_[v.index()] = kOnRim;
             std::size_t at = place_of(faces[r].corners);
@@ -53,7 +54,8 @@ bool same_side(const std::array<VertexId, 3>& a, const std::array<VertexId, 3>& 
 
 }  // namespace
 
-bool Triangulation::find_region(const KnownTets& known, KnownRegion& region) {
+bool Triangulation::find_region(const KnownTets& known, KnownRegion& region, const std::function<bool()>& goes_on) {
+    constexpr std::size_t kBetweenQuestions = 4096;
     const std::span<const KnownTets::RimFace> rim = known.rim();
     const FaceTable table(rim, known.has_vertex());
     region.tets.clear();
@@ -67,6 +69,7 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region) {
     };
     for (std::size_t r = 0; r < rim.size(); ++r) {
         if (region.outside[r].valid()) continue;
+        if (!goes_on()) return false;
         const auto& [a, b, c] = rim[r].corners;
         if (!is_inserted(a) || !is_inserted(b) || !is_inserted(c)) return false;
         TetFace start = find_face(a, b, c);
@@ -80,6 +83,7 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region) {
             for (const VertexId v : tets_.corners(t))
                 if (!table.is_known(v)) return false;
             region.tets.push_back(t);
+            if (region.tets.size() % kBetweenQuestions == 0 && !goes_on()) return false;
             region.group.push_back(rim[r].group);
             for (unsigned f = 0; f < 4; ++f) {
                 const TetFace beyond = tets_.across(t, f);

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -160,8 +161,9 @@ public:
     [[nodiscard]] const std::vector<TetId>& new_tets() const { return new_tets_; }
 
     // --- known tetrahedra instead of those that are there (replace_region.cpp)
-    /// What lies within the rim. @return false: the rim is not all there, or encloses a vertex that none of the known ones has
-    bool find_region(const KnownTets& known, KnownRegion& region);
+    /// What lies within the rim. @param goes_on  asked now and then
+    /// @return false: the rim is not all there, or encloses a vertex that none of the known ones has, or `goes_on` said no; nothing has changed in any case
+    bool find_region(const KnownTets& known, KnownRegion& region, const std::function<bool()>& goes_on);
     /// Known tetrahedron n becomes region.tets[n]. @param region  as find_region() left it, and nothing has changed since
     void replace_region(Workers& workers, const KnownTets& known, KnownRegion& region);
 

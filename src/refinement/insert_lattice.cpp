@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <thread>
 
 #include "conforming/place_point.hpp"
+#include "core/check.hpp"
 #include "core/huge_pages.hpp"
 #include "core/infinity.hpp"
 #include "core/resident_memory.hpp"
@@ -23,8 +25,12 @@ namespace {
 constexpr double kClearance = 0.5;
 /// Of the lattice constant: takes exact symmetry away, costs nothing in shape.
 constexpr double kLatticeJitter = 1e-4;
-/// Of seeds that go in without being asked about one by one: those whose tetrahedra are known.
+/// How a seed goes in: alone (0), in bulk (1), or in bulk unless its tetrahedra turn out to be known.
 constexpr char kKnown = 2;
+/// Of known tetrahedra while they are put in: corners and neighbours, cell, number of labels, and what arrays have to spare.
+constexpr std::size_t kBytesATet = 48;
+/// The lattice's margin is a third of its constant; rounded to so many steps of the coordinates it is the lattice still.
+constexpr double kLeastSteps = 4096;
 constexpr std::size_t kBoxGrain = std::size_t{1} << 12;
 
 /// Squared distance from p to the triangle: to its plane if the foot of the perpendicular lies inside, else to the nearest edge.
@@ -46,6 +52,7 @@ double squared_distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b,
 
 std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<LatticePoint>& lattice) {
     constexpr std::size_t kGrain = std::size_t{1} << 14;
+    WELLMESH_CHECK(Stage::refine, lattice.size() < std::size_t{1} << 31);  // Seed::number
     auto points = make_on_huge_pages<Vec3>(lattice.size(), workers_);
     workers_.for_ranges(lattice.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t k = begin; k < end; ++k) points[k] = lattice[k].point;
@@ -80,7 +87,8 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds, Lattice* lattice) {
     if (!guard_.has_too_many(mesh_.vertex_count() + seeds.size())) {
         const Boundary boundary = find_boundary();
         in_bulk = find_clear(boundary, seeds);
-        if (lattice != nullptr) {
+        const double step = std::numeric_limits<double>::epsilon() * largest_coordinate();
+        if (lattice != nullptr && lattice->tree->smallest_side() >= kLeastSteps * step) {
             filling.emplace(*lattice->tree, lattice->leaves, occupied(boundary, lattice->tree->smallest_side()), workers_);
             lattice->tree.reset();  // memory is short when all tetrahedra are there
             std::vector<std::uint32_t>().swap(lattice->leaves.of_node);
@@ -101,7 +109,7 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds, Lattice* lattice) {
         s.waits = outcome == Outcome::encroaches;  // finer boundaries are encroached by fewer
         inserted_ += outcome == Outcome::inserted;
     }
-    return !filling || fill(seeds, in_bulk, *filling);
+    return !filling || fill(seeds, in_bulk, std::move(*filling));
 }
 
 LatticeSeeder::Boundary LatticeSeeder::find_boundary() {
@@ -124,32 +132,51 @@ std::vector<Box> LatticeSeeder::occupied(const Boundary& boundary, double least_
     workers_.for_ranges(boundary.faces.size(), kBoxGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t f = begin; f < end; ++f) {
             const auto& [a, b, c] = boundary.faces[f].corners;
-            double radius = 0;
-            (void)circumcentre(mesh_.point(a), mesh_.point(b), mesh_.point(c), &radius);
-            // Points that far from the box, in lattice constants, are kept away anyhow.
-            if (!(radius <= least_spacing)) out[f] = out[f].grown(radius < kInfinity ? radius : 0);
+            out[f] = space_of(a, b, c, least_spacing);
         }
     });
     for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v) {
         const VertexInfo& info = mesh_.info(VertexId{v});
         if (info.carrier == CarrierKind::region && info.reason != InsertionReason::lattice) out.push_back({mesh_.point(VertexId{v}), mesh_.point(VertexId{v})});
     }
+    // Subsegments without facets are on no face; and where sizes vary there are faces that no seed keeps away from, as no size is asked for beside them.
     const auto& segments = mesh_.plc().segments;
-    if (std::any_of(segments.begin(), segments.end(), [](const auto& s) { return s.facets.empty(); }))
-        for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
-            const TetId t{i};
-            if (!mesh_.has_labels(t) || !mesh_.tets().is_finite(t)) continue;
-            for (unsigned e = 0; e < 6; ++e) {
-                const SegmentId s = mesh_.labels(t).segments[e];
-                if (!s.valid() || !segments[s.index()].facets.empty()) continue;
-                const Vec3 &a = mesh_.point(mesh_.tets().corner(t, kEdgeCorners[e][0])), &b = mesh_.point(mesh_.tets().corner(t, kEdgeCorners[e][1]));
-                Box box;
-                box.add(a);
-                box.add(b);
-                out.push_back(box.grown(distance(a, b) / 2));
-            }
+    const bool has_wires = std::any_of(segments.begin(), segments.end(), [](const auto& s) { return s.facets.empty(); });
+    if (!has_wires && !sizes_.varies()) return out;
+    for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
+        const TetId t{i};
+        if (!mesh_.has_labels(t) || !mesh_.tets().is_finite(t)) continue;
+        const TetLabels& l = mesh_.labels(t);
+        for (unsigned e = 0; e < 6; ++e) {
+            if (!l.segments[e].valid()) continue;
+            const Vec3 &a = mesh_.point(mesh_.tets().corner(t, kEdgeCorners[e][0])), &b = mesh_.point(mesh_.tets().corner(t, kEdgeCorners[e][1]));
+            Box box{a, a};
+            box.add(b);
+            out.push_back(box.grown(distance(a, b) / 2));
         }
+        for (unsigned f = 0; f < 4; ++f) {
+            if (!l.facets[f].valid()) continue;
+            const auto c = mesh_.tets().face_corners(TetFace{t, f});
+            out.push_back(space_of(c[0], c[1], c[2], least_spacing));
+        }
+    }
     return out;
+}
+
+/// Around a subface and the points that encroach upon it, but for those that a lattice constant keeps away anyhow. Not all of its equatorial sphere is within that: what
+/// encroaches there encroaches also upon the subface that it projects onto, and is within the radius of that one.
+Box LatticeSeeder::space_of(VertexId a, VertexId b, VertexId c, double least_spacing) const {
+    Box box;
+    for (const VertexId v : {a, b, c}) box.add(mesh_.point(v));
+    double radius = 0;
+    (void)circumcentre(mesh_.point(a), mesh_.point(b), mesh_.point(c), &radius);
+    return radius > least_spacing && radius < kInfinity ? box.grown(radius) : box;  // a flat one has no sphere
+}
+
+double LatticeSeeder::largest_coordinate() const {
+    double largest = 0;
+    for (const Vec3& p : mesh_.plc().vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return largest;
 }
 
 /// Which seeds are in a cell that wants them, clear of the boundary, and in no ball about an acute vertex: balls give way one by one. Those that are
@@ -274,10 +301,11 @@ bool LatticeSeeder::insert_in_bulk(std::span<Seed> seeds, std::span<const std::u
 }
 
 /// Puts the lattice's tetrahedra where they are known. @param in_bulk  by seed: those that are kKnown were left for this
-bool LatticeSeeder::fill(std::span<Seed> seeds, const std::vector<char>& in_bulk, LatticeFilling& filling) {
+bool LatticeSeeder::fill(std::span<Seed> seeds, const std::vector<char>& in_bulk, LatticeFilling&& known) {
+    std::optional<LatticeFilling> filling(std::move(known));
     std::vector<VertexId> vertex_of(seeds.size());
     std::vector<std::uint32_t> seed_of(seeds.size());
-    std::vector<char> is_known = filling.far_points(seeds.size()), is_there(seeds.size());
+    std::vector<char> is_known = filling->far_points(seeds.size()), is_there(seeds.size());
     const auto is_inserted = [&](const Seed& s) { return s.vertex.valid() && mesh_.triangulation().is_inserted(s.vertex); };
     for (std::uint32_t k = 0; k < seeds.size(); ++k) {
         const std::uint32_t p = seeds[k].number;
@@ -294,7 +322,9 @@ bool LatticeSeeder::fill(std::span<Seed> seeds, const std::vector<char>& in_bulk
             return mesh_.insert_inside(workers_, vertices, is_welcome, goes_on, encroaching);
         });
     };
-    for (std::vector<std::uint32_t> lack = filling.short_of_neighbours(is_known, is_there); !lack.empty(); lack = filling.short_of_neighbours(is_known, is_there)) {
+    while (true) {
+        const std::vector<std::uint32_t> lack = filling->short_of_neighbours(is_known, is_there);
+        if (lack.empty()) break;
         std::vector<std::uint32_t> numbers;
         for (const std::uint32_t p : lack) {
             is_known[p] = 0;
@@ -303,25 +333,31 @@ bool LatticeSeeder::fill(std::span<Seed> seeds, const std::vector<char>& in_bulk
         if (!insert_these(numbers)) return false;
         for (const std::uint32_t k : numbers) is_there[seeds[k].number] = is_inserted(seeds[k]);
     }
-    std::vector<std::uint32_t> rest;
     std::vector<VertexId> fresh;
-    for (std::uint32_t k = 0; k < seeds.size(); ++k)
-        if (is_known[seeds[k].number] != 0 && !is_inserted(seeds[k])) {
-            rest.push_back(k);
-            fresh.push_back(seeds[k].vertex);
-        }
+    const auto is_fresh = [&](const Seed& s) { return is_known[s.number] != 0 && !is_inserted(s); };
+    for (const Seed& s : seeds)
+        if (is_fresh(s)) fresh.push_back(s.vertex);
     if (fresh.empty()) return true;
     if (!may_go_on(fresh.size())) return false;
     std::vector<std::uint32_t>().swap(seed_of);
     std::vector<char>().swap(is_there);
     return_freed_memory();
-    // Numbers first, while there are few: known tetrahedra get theirs in an order of their own.
+    // Numbers first, while there are few: known tetrahedra come after all others, or in the places of those that they replace.
     mesh_.renumber_tets(workers_);
-    filling.know(is_known, vertex_of, mesh_.vertex_slots());
-    if (!mesh_.insert_known(workers_, filling, fresh)) return insert_these(std::move(rest));
-    tets_are_numbered_ = true;
-    inserted_ += fresh.size();
-    return true;
+    if (!may_go_on(fresh.size())) return false;
+    filling->know(is_known, vertex_of, mesh_.vertex_slots());
+    const auto goes_on = [&] { return may_go_on(fresh.size()); };
+    if (filling->count() < KnownTets::kMost && guard_.has_room_for(kBytesATet * filling->count()) && mesh_.put_known_tets(workers_, *filling, fresh, goes_on)) {
+        tets_are_numbered_ = true;
+        inserted_ += fresh.size();
+        known_ += fresh.size();
+        return true;
+    }
+    filling.reset();
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t k = 0; k < seeds.size(); ++k)
+        if (is_fresh(seeds[k])) numbers.push_back(k);
+    return insert_these(std::move(numbers));
 }
 
 /// The vertex nearest to p is a corner of its cavity; the nearest subface need not be a face of it (p may lie beside an edge or a corner of the

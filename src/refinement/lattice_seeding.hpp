@@ -40,6 +40,8 @@ public:
     /// that lie close to the boundary or encroach upon it. The mesh conforms afterwards. @throws as BoundaryRefiner::conform does.
     /// Ends early, the mesh conforming, when the guard says so. The ids of tetrahedra are new afterwards. @return vertices inserted from the lattice
     std::uint64_t seed();
+    /// Those of them that went in with tetrahedra that were known (lattice_filling.hpp).
+    [[nodiscard]] std::uint64_t known() const { return known_; }
 
 private:
     /// For a view of a zone: splits its boundary.
@@ -87,12 +89,14 @@ private:
     struct Boundary;
     [[nodiscard]] Boundary find_boundary();
     [[nodiscard]] std::vector<Box> occupied(const Boundary& boundary, double least_spacing) const;
+    [[nodiscard]] Box space_of(VertexId a, VertexId b, VertexId c, double least_spacing) const;
+    [[nodiscard]] double largest_coordinate() const;
     [[nodiscard]] std::vector<char> find_clear(const Boundary& boundary, std::span<Seed> seeds);
     void find_clear_of(const Boundary& boundary, std::span<Seed> block, TetId& near, std::vector<std::uint32_t>& candidates) const;
     bool insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which);
     template <class InsertAll>
     bool insert_in_bulk(std::span<Seed> seeds, std::span<const std::uint32_t> numbers, InsertAll&& insert_all);
-    bool fill(std::span<Seed> seeds, const std::vector<char>& in_bulk, LatticeFilling& filling);
+    bool fill(std::span<Seed> seeds, const std::vector<char>& in_bulk, LatticeFilling&& known);
     Outcome insert(const Vec3& p, TetId& near, VertexId& vertex);
     [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double spacing_at(const Vec3& p, CellId c) const;
@@ -108,7 +112,7 @@ private:
     RunGuard& guard_;
     const SizeField& sizes_;
     Workers& workers_;
-    std::uint64_t inserted_ = 0;
+    std::uint64_t inserted_ = 0, known_ = 0;
     std::vector<double> radius_;   // by cell: circumradius bound that is the same all over it; infinite: none
     std::vector<double> spacing_;  // by cell: lattice constant of that
     std::vector<char> is_thin_;    // by cell: nothing is done in it

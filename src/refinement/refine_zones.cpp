@@ -76,7 +76,8 @@ void Refiner::drain_zone(const std::function<bool(std::size_t)>& may_go_on) {
 
 void Refiner::drain_in_zones() {
     constexpr std::size_t kLeastAZone = 256, kSampleAZone = 512;
-    // Of ten that wait, nine are gone once one of them is split. A vertex takes seven tetrahedra, or less; who finds no room waits for the next turn.
+    // Of ten that wait, nine are gone once one of them is split beside a lattice; without one, where six for a vertex left zones without room, five do. A vertex takes
+    // seven tetrahedra, or less; who finds no room waits for the next turn. What is put aside in vain stays in memory.
     // One in four of them may have labels.
     constexpr std::size_t kWaitingPerVertex = 5, kTetsPerVertex = 8, kRecordsPerVertex = 2, kMoreVertices = 64, kMoreRecords = 512;
     boundary_.prepare_for_zones();

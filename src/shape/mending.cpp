@@ -9,7 +9,7 @@ namespace wellmesh {
 namespace {
 
 constexpr unsigned kTriesUntouched = 3;  // failures after which a tetrahedron rests until its neighbourhood changes
-constexpr std::uint32_t kLastTime = 1U << 31;
+constexpr std::uint32_t kLastTime = 1U << 31;  // of the clock at the begin of a pass
 constexpr unsigned kTriesInAll = 4;      // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 
 }  // namespace

@@ -96,6 +96,8 @@ std::set<std::array<std::uint32_t, 4>> tets_of(const Triangulation& tri) {
     return out;
 }
 
+constexpr auto kGoesOn = [] { return true; };
+
 TEST(LatticeFilling, MakesWhatInsertionMakes) {
     for (std::uint64_t seed = 0; seed < 6; ++seed)
         for (const unsigned threads : {1U, 3U}) {
@@ -107,7 +109,7 @@ TEST(LatticeFilling, MakesWhatInsertionMakes) {
             EXPECT_GT(std::count(scene.is_known.begin(), scene.is_known.end(), 1), 100);
             EXPECT_GT(scene.filling->count(), 1500U);
             KnownRegion region;
-            ASSERT_TRUE(part.find_region(*scene.filling, region));
+            ASSERT_TRUE(part.find_region(*scene.filling, region, kGoesOn));
             EXPECT_GT(std::set<std::uint32_t>(region.group.begin(), region.group.end()).size(), 1U);
             part.replace_region(scene.workers, *scene.filling, region);
             EXPECT_EQ(check_adjacency(part), "");
@@ -128,22 +130,24 @@ TEST(LatticeFilling, RefusesARegionWithAnotherVertexOrWithoutItsRim) {
     KnownRegion region;
     {
         Triangulation tri = scene.triangulated(is_shell);
-        const auto before = tets_of(tri);
         const auto known = static_cast<std::size_t>(std::find(scene.is_known.begin(), scene.is_known.end(), 1) - scene.is_known.begin());
         const VertexId stranger = tri.add_point(scene.points[known] + Vec3{0.1, 0.2, 0.05});
         Cavity cavity;
         ASSERT_TRUE(tri.find_conflict_cavity(tri.point(stranger), tri.tet_of(VertexId{scene.lattice}), cavity));
         tri.insert_vertex(stranger, cavity);
         scene.filling->know(scene.is_known, scene.vertex_of, scene.points.size() + 1);
-        EXPECT_FALSE(tri.find_region(*scene.filling, region));
+        EXPECT_FALSE(tri.find_region(*scene.filling, region, kGoesOn));
         EXPECT_EQ(check_adjacency(tri), "");
     }
     scene.filling->know(scene.is_known, scene.vertex_of, scene.points.size());
     const VertexId on_rim = scene.filling->rim()[scene.filling->rim().size() / 2].corners[0];
     Triangulation tri = scene.triangulated([&](std::uint32_t v) { return is_shell(v) && v != on_rim.value(); });
-    EXPECT_FALSE(tri.find_region(*scene.filling, region));
+    EXPECT_FALSE(tri.find_region(*scene.filling, region, kGoesOn));
     Triangulation complete = scene.triangulated(is_shell);
-    EXPECT_TRUE(complete.find_region(*scene.filling, region));
+    const auto before = tets_of(complete);
+    EXPECT_FALSE(complete.find_region(*scene.filling, region, [] { return false; }));
+    EXPECT_TRUE(tets_of(complete) == before);
+    EXPECT_TRUE(complete.find_region(*scene.filling, region, kGoesOn));
 }
 
 }  // namespace

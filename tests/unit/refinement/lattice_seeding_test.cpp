@@ -131,6 +131,27 @@ TEST(LatticeSeeding, SeedsAreClearOfTheBoundaryAndFillTheRest) {
         }
 }
 
+struct Seeded {
+    std::uint64_t seeds = 0, known = 0;
+    std::vector<Vec3> points;
+    std::vector<TetStore::Corners> tets;
+};
+
+Seeded seeded(const Plc& plc, const MeshOptions& options, unsigned threads, const RunControl& control = {}) {
+    StagedMesh staged(plc, options);
+    Workers workers(threads);
+    staged.conform();
+    staged.guard = RunGuard(options.limits, control);
+    staged.guard.set_conforming();
+    Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+    LatticeSeeder seeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), workers);
+    Seeded out{seeder.seed(), seeder.known(), {}, {}};
+    EXPECT_EQ(staged.problem(false), "");
+    for (std::size_t v = 0; v < staged.mesh.vertex_slots(); ++v) out.points.push_back(staged.mesh.point(VertexId{v}));
+    for (std::size_t t = 0; t < staged.mesh.tets().slots(); ++t) out.tets.push_back(staged.mesh.tets().corners(TetId{t}));
+    return out;
+}
+
 /// Inside each of them the lattice's tetrahedra are put in as they are known to be.
 TEST(LatticeSeeding, SeparatePartsAreFilledEach) {
     Plc plc = cube();
@@ -142,19 +163,45 @@ TEST(LatticeSeeding, SeparatePartsAreFilledEach) {
             for (auto& v : polygon) v += first;
         plc.facets.push_back(facet);
     }
-    for (const unsigned threads : {1U, 3U}) {
-        const MeshOptions options = sized(0.07);
-        StagedMesh staged(plc, options);
-        Workers workers(threads);
-        staged.conform();
-        Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
-        EXPECT_GT(LatticeSeeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), workers).seed(), 3000U);
-        EXPECT_EQ(staged.problem(false), "");
-        std::map<CellId, double> volumes = staged.cell_volumes();
-        double sum = 0;
-        for (const auto& [cell, volume] : volumes) sum += volume;
-        EXPECT_NEAR(sum, 1 + 0.7 * 0.7 * 0.7, 1e-9);
+    const Seeded one = seeded(plc, sized(0.06), 1);
+    EXPECT_GT(one.seeds, 5000U);
+    EXPECT_GT(one.known, one.seeds / 4);
+    for (const unsigned threads : {2U, 3U}) {
+        const Seeded several = seeded(plc, sized(0.06), threads);
+        EXPECT_EQ(several.known, one.known);
+        EXPECT_TRUE(several.points == one.points);
+        EXPECT_TRUE(several.tets == one.tets);
     }
+}
+
+TEST(LatticeSeeding, KnownTetrahedraKeepAwayFromAllThatIsInside) {
+    Plc with_wire = cube();
+    with_wire.vertices.insert(with_wire.vertices.end(), {{0.3, 0.35, 0.4}, {0.7, 0.6, 0.55}, {0.5, 0.2, 0.7}});
+    with_wire.segments.push_back({{8, 9}});
+    EXPECT_GT(seeded(with_wire, sized(0.05), 1).known, 500U);
+
+    Plc two_cells = cube_with_internal_facet();
+    two_cells.region_seeds[0].max_volume = 1e-4;
+    two_cells.region_seeds[1].max_volume = 1e-4 / 64;
+    MeshOptions options;
+    EXPECT_GT(seeded(two_cells, options, 1).known, 500U);
+
+    // A size is asked for in one half only, and nothing makes it grow beyond.
+    options.size.gradation = 0;
+    options.size.at = [](const Vec3& p) { return p.x < 0.6 ? 0.04 : kInfinity; };
+    EXPECT_GT(seeded(cube(), options, 1).known, 100U);
+}
+
+/// What is known would be there at once: a limit on memory is kept by insertion.
+TEST(LatticeSeeding, KnownTetrahedraKeepTheLimitOnMemory) {
+    MeshOptions options = sized(0.05);
+    EXPECT_GT(seeded(cube(), options, 1).known, 0U);
+    options.limits.memory_bytes = std::uint64_t{1} << 30;
+    RunControl control;
+    control.resident_bytes = [] { return static_cast<std::uint64_t>((std::uint64_t{1} << 30) / 1.5) - 1000; };
+    const Seeded limited = seeded(cube(), options, 1, control);
+    EXPECT_EQ(limited.known, 0U);
+    EXPECT_GT(limited.seeds, 1000U);
 }
 
 TEST(LatticeSeeding, WhereNothingIsAskedNothingChanges) {
