@@ -64,8 +64,14 @@ struct Keyed {
     friend bool operator<(const Keyed& a, const Keyed& b) { return std::pair(a.key, a.point) < std::pair(b.key, b.point); }
 };
 
-/// Sorts by keys, equal ones staying in order: digit by digit from the last one, for it branches on nothing.
+/// Sorts by keys, equal ones staying in order: digit by digit from the last one, for it branches on nothing. Few, the points of one facet, are sorted before its
+/// tables would be cleared.
 void sort_by_key(std::span<Keyed> run) {
+    constexpr std::size_t kFew = 512;
+    if (run.size() <= kFew) {
+        std::stable_sort(run.begin(), run.end(), [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
+        return;
+    }
     constexpr unsigned kDigitBits = 11, kDigits = (64 + kDigitBits - 1) / kDigitBits;
     constexpr std::size_t kValues = std::size_t{1} << kDigitBits;
     const auto digit_of = [](std::uint64_t key, unsigned d) { return static_cast<std::size_t>(key >> (d * kDigitBits)) % kValues; };
