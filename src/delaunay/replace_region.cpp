@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Known tetrahedra take the place of what fills their region. Their rim must be there already: the triangulation of some of the points has every Delaunay tetrahedron
-// of all of them that has no other corners, and nothing but these lies outside of the rim.
+// Known tetrahedra take the place of what fills their region. Their rim must be there already: the triangulation of some of the points has every
+// Delaunay tetrahedron of all of them that has no other corners, and nothing but these lies outside of the rim.
 #include <algorithm>
 #include <bit>
 

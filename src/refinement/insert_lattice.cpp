@@ -62,7 +62,8 @@ std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<Latti
     workers_.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t k = begin; k < end; ++k) {
             const LatticePoint& p = lattice[order[k]];
-            seeds[k] = {flush_to_exact_range(p.point + (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1)), {}, order[k] & 0x7fffffffU};
+            const Vec3 jitter = (kLatticeJitter * p.spacing) * picking_point(3, mix64(boundary_.seed(), order[k]), 1);
+            seeds[k] = {flush_to_exact_range(p.point + jitter), {}, order[k] & 0x7fffffffU};
         }
     });
     return seeds;
@@ -74,7 +75,7 @@ struct LatticeSeeder::Boundary {
     std::vector<Box> boxes;  ///< of the faces, then vertices
     BoxTree tree;
     std::vector<Box> balls;  ///< about acute vertices
-    double widest = 0;  ///< no seed keeps farther away; infinite where that is not known beforehand
+    double widest = 0;       ///< no seed keeps farther away; infinite where that is not known beforehand
 };
 
 /// On all workers first: whether seeds are clear of the boundary, and encroach upon it, does not depend on what else is there. Then those in balls,
@@ -163,8 +164,8 @@ std::vector<Box> LatticeSeeder::occupied(const Boundary& boundary, double least_
     return out;
 }
 
-/// Around a subface and the points that encroach upon it, but for those that a lattice constant keeps away anyhow. Not all of its equatorial sphere is within that: what
-/// encroaches there encroaches also upon the subface that it projects onto, and is within the radius of that one.
+/// Around a subface and the points that encroach upon it, but for those that a lattice constant keeps away anyhow. Not all of its equatorial sphere is
+/// within that: what encroaches there encroaches also upon the subface that it projects onto, and is within the radius of that one.
 Box LatticeSeeder::space_of(VertexId a, VertexId b, VertexId c, double least_spacing) const {
     Box box;
     for (const VertexId v : {a, b, c}) box.add(mesh_.point(v));
@@ -347,7 +348,8 @@ bool LatticeSeeder::fill(std::span<Seed> seeds, const std::vector<char>& in_bulk
     if (!may_go_on(fresh.size())) return false;
     filling->know(is_known, vertex_of, mesh_.vertex_slots());
     const auto goes_on = [&] { return may_go_on(fresh.size()); };
-    if (filling->count() < KnownTets::kMost && guard_.has_room_for(kBytesATet * filling->count()) && mesh_.put_known_tets(workers_, *filling, fresh, goes_on)) {
+    const bool may_all_be_there = filling->count() < KnownTets::kMost && guard_.has_room_for(kBytesATet * filling->count());
+    if (may_all_be_there && mesh_.put_known_tets(workers_, *filling, fresh, goes_on)) {
         tets_are_numbered_ = true;
         inserted_ += fresh.size();
         known_ += fresh.size();

@@ -24,8 +24,8 @@ constexpr Offset corner_offset(unsigned axis, unsigned q) {
     return out;
 }
 
-/// Tetrahedron 4 * axis + q of a leaf has for corners the centres of the leaf and of the one above it, and corners q and q + 1 of the face between. Across a face that
-/// has only one of these centres lies a tetrahedron of another face of that centre's leaf, the one that has the same edge.
+/// Tetrahedron 4 * axis + q of a leaf has for corners the centres of the leaf and of the one above it, and corners q and q + 1 of the face between.
+/// Across a face that has only one of these centres lies a tetrahedron of another face of that centre's leaf, the one that has the same edge.
 struct Beyond {
     unsigned axis = 0;      // of that face
     bool is_below = false;  // the leaf's centre
@@ -56,7 +56,8 @@ static_assert(std::all_of(kBeyond.begin(), kBeyond.end(), [](const auto& both) {
 
 }  // namespace
 
-LatticeFilling::LatticeFilling(const GradedOctree& tree, const LatticeLeaves& leaves, std::span<const Box> occupied, Workers& workers) : leaves_(leaves), workers_(workers) {
+LatticeFilling::LatticeFilling(const GradedOctree& tree, const LatticeLeaves& leaves, std::span<const Box> occupied, Workers& workers)
+    : leaves_(leaves), workers_(workers) {
     const std::size_t count = leaves.leaves.size();
     std::vector<char> here(count, 0), wider(count, 0);
     workers.for_ranges(occupied.size(), kLeafGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -254,7 +255,8 @@ void LatticeFilling::know(const std::vector<char>& is_known, std::span<const Ver
             mark_vertices(i, is_known);
             // Stars about the lower and the upper centre have all that is across.
             const auto star_is_known = [&](std::uint32_t leaf) { return leaf != kNone && is_known[leaf] != 0; };
-            if (mask_[i] == 0 || (star_is_known(i) && star_is_known(beyond(i, 0, 1)) && star_is_known(beyond(i, 1, 1)) && star_is_known(beyond(i, 2, 1)))) continue;
+            if (mask_[i] == 0) continue;
+            if (star_is_known(i) && star_is_known(beyond(i, 0, 1)) && star_is_known(beyond(i, 1, 1)) && star_is_known(beyond(i, 2, 1))) continue;
             std::uint32_t number = first_[i];
             const Around around(*this, i);
             for (unsigned t = 0; t < kTets; ++t) {
@@ -317,7 +319,7 @@ void LatticeFilling::list(std::size_t piece, std::vector<Tet>& tets) const {
             Tet& tet = tets.emplace_back();
             tet.corners = corners(i, t);
             tet.group = group_[i];
-            // Of the four about a line through centres the first one is home to the lower centre; and of those along one axis to the lowest corner of the leaf above.
+            // The first one of a leaf is home to its centre, and to the lowest corner of the leaf above.
             if (t == 0) tet.homes = 1U << 0 | 1U << 2;
             for (unsigned f = 0; f < 4; ++f) {
                 const std::uint32_t other = around.across(t, f);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lattice's own tetrahedra, where they are known without a search.
 //
-// The Delaunay triangulation of the bcc lattice is generic: all its tetrahedra are alike, and the next point is far outside of each circumsphere, in which jitter
-// of a small part of the lattice constant changes nothing. So around a point of the lattice whose neighbourhood has all of the lattice and nothing else, the
-// tetrahedra of the mesh are those of the lattice, two corners of a leaf's face and the centres on both sides of it. Points that have such stars need not be
-// inserted: what the others make has all tetrahedra that have no such corner, and the rest is put in their place (KnownTets).
+// The Delaunay triangulation of the bcc lattice is generic: all its tetrahedra are alike, and the next point is far outside of each circumsphere, in
+// which jitter of a small part of the lattice constant changes nothing. So around a point of the lattice whose neighbourhood has all of the lattice and
+// nothing else, the tetrahedra of the mesh are those of the lattice, two corners of a leaf's face and the centres on both sides of it. Points that have
+// such stars need not be inserted: what the others make has all tetrahedra that have no such corner, and the rest is put in their place (KnownTets).
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ namespace wellmesh {
 
 class LatticeFilling : public KnownTets {
 public:
-    /// @param leaves  of the tree's lattice; must outlive this  @param occupied  boxes around all else that there is; there are no known stars in leaves that meet one,
-    ///                nor all around these
+    /// @param leaves    of the tree's lattice; must outlive this
+    /// @param occupied  boxes around all else that there is: there are no known stars in leaves that meet one, nor all around these
     LatticeFilling(const GradedOctree& tree, const LatticeLeaves& leaves, std::span<const Box> occupied, Workers& workers);
 
     [[nodiscard]] bool is_regular(std::uint32_t leaf) const { return is_regular_[leaf] != 0; }
@@ -46,7 +46,9 @@ private:
     static constexpr std::size_t kLeavesAPiece = 256;
     static constexpr unsigned kTets = 12;  ///< of a leaf: four on each face shared with a leaf above
 
-    [[nodiscard]] std::uint32_t beyond(std::uint32_t leaf, unsigned axis, unsigned above) const { return leaf == kNone ? kNone : leaves_.leaves[leaf].beyond[axis][above]; }
+    [[nodiscard]] std::uint32_t beyond(std::uint32_t leaf, unsigned axis, unsigned above) const {
+        return leaf == kNone ? kNone : leaves_.leaves[leaf].beyond[axis][above];
+    }
     /// The leaf whose lowest corner is corner q of the face between a leaf and the one above it.
     [[nodiscard]] std::uint32_t leaf_at_corner(std::uint32_t above, unsigned axis, unsigned q) const;
     [[nodiscard]] std::uint32_t point_at_corner(std::uint32_t above, unsigned axis, unsigned q) const {
@@ -66,11 +68,11 @@ private:
 
     const LatticeLeaves& leaves_;
     Workers& workers_;
-    std::vector<char> is_regular_;           // by leaf: it and all leaves around it are of one size, and nothing else is in them
-    std::vector<std::uint16_t> mask_;        // by leaf: which of its tetrahedra are known
-    std::vector<std::uint32_t> first_;       // by leaf: number of its first one; and of all
-    std::vector<std::uint32_t> first_rim_;   // by leaf: of its faces
-    std::vector<std::uint32_t> group_;       // by leaf
+    std::vector<char> is_regular_;          // by leaf: it and all leaves around it are of one size, and nothing else is in them
+    std::vector<std::uint16_t> mask_;       // by leaf: which of its tetrahedra are known
+    std::vector<std::uint32_t> first_;      // by leaf: number of its first one; and of all
+    std::vector<std::uint32_t> first_rim_;  // by leaf: of its faces
+    std::vector<std::uint32_t> group_;      // by leaf
     std::vector<RimFace> rim_;
     std::vector<char> has_vertex_;
     std::span<const VertexId> vertex_of_;
