@@ -110,7 +110,7 @@ double AcuteGeometry::ball_radius(VertexId v) {
 
 void AcuteGeometry::find_balls() {
     for (std::size_t v = 0; v < acute_deg_.size(); ++v) (void)ball_radius(VertexId{v});
-    feature_size_.reset();  // half a kilobyte a facet, which nobody asks any more
+    feature_size_.reset();  // some hundred bytes a facet, which nobody asks any more
 }
 
 std::vector<Box> AcuteGeometry::boxes_of_balls() {
