@@ -88,7 +88,9 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds, Lattice* lattice) {
     if (!guard_.has_too_many(mesh_.vertex_count() + seeds.size())) {
         const Boundary boundary = find_boundary();
         in_bulk = find_clear(boundary, seeds);
-        const double step = std::numeric_limits<double>::epsilon() * largest_coordinate();
+        const Vec3 &low = mesh_.triangulation().low(), &high = mesh_.triangulation().high();
+        const double largest = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y), std::abs(high.z)});
+        const double step = std::numeric_limits<double>::epsilon() * largest;
         if (lattice != nullptr && lattice->tree->smallest_side() >= kLeastSteps * step) {
             filling.emplace(*lattice->tree, lattice->leaves, occupied(boundary, lattice->tree->smallest_side()), workers_);
             lattice->tree.reset();  // memory is short when all tetrahedra are there
@@ -172,12 +174,6 @@ Box LatticeSeeder::space_of(VertexId a, VertexId b, VertexId c, double least_spa
     double radius = 0;
     (void)circumcentre(mesh_.point(a), mesh_.point(b), mesh_.point(c), &radius);
     return radius > least_spacing && radius < kInfinity ? box.grown(radius) : box;  // a flat one has no sphere
-}
-
-double LatticeSeeder::largest_coordinate() const {
-    double largest = 0;
-    for (const Vec3& p : mesh_.plc().vertices) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    return largest;
 }
 
 /// Which seeds are in a cell that wants them, clear of the boundary, and in no ball about an acute vertex: balls give way one by one. Those that are

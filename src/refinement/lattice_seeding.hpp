@@ -90,7 +90,6 @@ private:
     [[nodiscard]] Boundary find_boundary();
     [[nodiscard]] std::vector<Box> occupied(const Boundary& boundary, double least_spacing) const;
     [[nodiscard]] Box space_of(VertexId a, VertexId b, VertexId c, double least_spacing) const;
-    [[nodiscard]] double largest_coordinate() const;
     [[nodiscard]] std::vector<char> find_clear(const Boundary& boundary, std::span<Seed> seeds);
     void find_clear_of(const Boundary& boundary, std::span<Seed> block, TetId& near, std::vector<std::uint32_t>& candidates) const;
     bool insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which);
