@@ -12,7 +12,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
+#include "predicates/apex_search.hpp"
 #include "predicates/four_inspheres.hpp"
 #include "predicates/fp_environment.hpp"
 #include "predicates/insphere_lanes.hpp"
@@ -93,6 +95,13 @@ public:
             signs[i] = values[i] > insphere_bound_    ? Sign::positive
                        : values[i] < -insphere_bound_ ? Sign::negative
                                                       : insphere_beyond_filter(*points[i][0], *points[i][1], *points[i][2], *points[i][3], e);
+    }
+    /// The point in front of the face whose sphere with it is empty of the others is the nominee or one of the rivals (ApexSearch): exact
+    /// tests decide among these.
+    [[nodiscard]] std::uint32_t nominate_apex(const PointColumns& points, const std::array<std::uint32_t, 3>& face,
+                                              std::vector<std::uint32_t>& rivals) const {
+        const ApexSearch search{points, face, orient3d_bound_, insphere_bound_};
+        return has_lanes_ ? search.nominate_in_lanes(rivals) : search.nominate(rivals);
     }
     [[nodiscard]] Sign power_test(const WeightedPoint& a, const WeightedPoint& b, const WeightedPoint& c, const WeightedPoint& d,
                                   const WeightedPoint& e) const {
