@@ -265,6 +265,33 @@ private:
         FacetId facet{};
     };
 
+    /// Of the labels in one hole; vertices are numbered as the hole's link (remove_labelled.cpp).
+    struct HoleLabels {
+        struct Loop {
+            FacetId facet{};
+            std::size_t faces = 0, fans = 0;
+        };
+        struct LoopFace {
+            std::size_t loop = 0;
+            std::array<std::uint32_t, 2> corners{};  // besides the vertex that goes
+        };
+        struct Edge {
+            std::uint64_t key = 0;
+            SegmentId segment{};
+        };
+        std::vector<std::uint32_t> link_edges;       // star tetrahedra by their edges on the link
+        std::vector<std::uint32_t> star_part, part;  // of the star's and of the filling's tetrahedra
+        std::vector<CellId> cell_of_part;
+        std::vector<Loop> loops;
+        std::vector<LoopFace> loop_faces;
+        std::vector<std::uint64_t> on_loops;         // for each vertex a bit for each loop
+        std::vector<std::uint32_t> ends;             // of the subsegments at the vertex that goes
+        std::vector<Edge> segments;                  // labelled edges of the link, and the one that heals
+        std::vector<char> on_segment;                // is the vertex an end of one of these?
+        std::vector<std::array<FacetId, 4>> facets;  // of the filling
+        std::vector<std::size_t> stack, count;
+    };
+
     // savepoints
     struct TetState {
         TetStore::Corners corners{};
@@ -360,7 +387,7 @@ private:
     std::vector<Frame> frames_;  // of the savepoints
     bool has_views_ = false;     // which keep what they change until they are joined
 
-    // scratch of one insertion
+    // scratch of one insertion or removal
     std::vector<CapturedFace> captured_;
     std::vector<InteriorFace> interior_;
     std::vector<Subsegment> interior_segments_;  // deleted by the insertion
@@ -371,6 +398,7 @@ private:
     EdgeLookup rim_;         // the edges of captured faces; none where there is no loop
     std::vector<std::size_t> mine_, taken_;
     std::vector<FacetId> carrier_facets_;
+    HoleLabels hole_labels_;
     Hole undo_hole_;
     Cavity undo_cavity_;
 

@@ -3,234 +3,265 @@
 // filling from the boundary of the hole, and where two parts meet runs the surface again. If the parts don't separate along faces of
 // the right facet, the mesh without the vertex would not conform, and nothing is changed.
 #include <algorithm>
+#include <bit>
 
 #include "conforming/conforming_mesh.hpp"
 
 namespace wellmesh {
 
+/// Lives for one removal, on the mesh's scratch.
 class HoleLabeller {
 public:
-    HoleLabeller(ConformingMesh& mesh, const Hole& hole) : mesh_(mesh), tets_(mesh.tets()), hole_(hole) {}
+    HoleLabeller(ConformingMesh& mesh, const Hole& hole) : mesh_(mesh), tets_(mesh.tets()), hole_(hole), l_(mesh.hole_labels_) {}
 
     bool run() {
+        const bool is_parted = collect_labels();
+        if (!l_.ends.empty() && !segment_survives()) return false;
+        inherit_facets();
+        if (!is_parted) {
+            l_.cell_of_part.assign(1, mesh_.cell(hole_.star[0]));
+            l_.part.assign(hole_.filling.size(), 0);
+            return true;
+        }
         split_star();
-        collect_labels();
-        return flood() && find_surface() && segment_survives();
+        mark_loops();
+        return flood() && find_surface();
     }
 
     void write(const std::vector<TetId>& fresh) {
         for (std::size_t i = 0; i < fresh.size(); ++i) {
             const TetId t = fresh[i];
-            mesh_.cell_[t.index()] = cell_of_part_[part_[i]];
+            mesh_.cell_[t.index()] = l_.cell_of_part[l_.part[i]];
             for (unsigned f = 0; f < 4; ++f) {
-                const FacetId facet = new_labels_[i].facets[f];
+                const FacetId facet = l_.facets[i][f];
                 if (facet.valid()) mesh_.labels_for_writing(t).facets[f] = facet;
             }
             const auto& c = hole_.filling[i];
-            for (const Subsegment& s : segments_)
-                for (unsigned e = 0; e < 6; ++e) {
-                    const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
-                    if ((a == s.a && b == s.b) || (a == s.b && b == s.a)) mesh_.labels_for_writing(t).segments[e] = s.segment;
-                }
+            for (unsigned e = 0; e < 6; ++e) {
+                const std::uint32_t a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
+                if ((l_.on_segment[a] & l_.on_segment[b]) == 0) continue;
+                const auto s = std::find_if(l_.segments.rbegin(), l_.segments.rend(), [key = key_of(a, b)](const Edge& edge) { return edge.key == key; });
+                if (s != l_.segments.rend()) mesh_.labels_for_writing(t).segments[e] = s->segment;
+            }
         }
     }
 
     /// The healed subsegment may have been an edge already, an ulp beside the vertex: then tetrahedra outside the hole need the label too.
     void heal_segment() {
-        if (ends_.size() == 2) mesh_.label_edge(ends_[0], ends_[1], SegmentId{mesh_.info(hole_.vertex).carrier_id});
+        if (!l_.ends.empty()) mesh_.label_edge(hole_.link[l_.ends[0]], hole_.link[l_.ends[1]], SegmentId{mesh_.info(hole_.vertex).carrier_id});
     }
 
 private:
     static constexpr std::uint32_t kNone = 0xffffffffU;
-    struct Loop {
-        FacetId facet{};
-        std::vector<VertexId> vertices;
-        std::size_t faces = 0, fans = 0;
-    };
+    using Loop = ConformingMesh::HoleLabels::Loop;
+    using LoopFace = ConformingMesh::HoleLabels::LoopFace;
+    using Edge = ConformingMesh::HoleLabels::Edge;
+    using Corners = std::array<std::uint32_t, 4>;
+
+    static unsigned corner_of(const Corners& c, std::uint32_t v) { return c[0] == v ? 0U : c[1] == v ? 1U : c[2] == v ? 2U : c[3] == v ? 3U : 4U; }
+    static std::uint64_t key_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
+    static bool is_inside(std::uint32_t opposite) { return (opposite & Hole::kBoundaryBit) == 0; }
+
+    /// The star tetrahedron that has the edge ab on the link, seen from one side; its neighbour has ba. What is no such edge may hold anything.
+    std::uint32_t& on_edge(std::uint32_t a, std::uint32_t b) { return l_.link_edges[a * hole_.link.size() + b]; }
 
     /// Parts of the star between labelled faces through the vertex.
     void split_star() {
-        const auto& star = hole_.star;
-        star_part_.assign(star.size(), kNone);
-        const auto index = [&](TetId t) { return static_cast<std::size_t>(std::find(star.begin(), star.end(), t) - star.begin()); };
-        for (std::size_t seed = 0; seed < star.size(); ++seed) {
-            if (star_part_[seed] != kNone) continue;
-            const auto part = static_cast<std::uint32_t>(cell_of_part_.size());
-            cell_of_part_.push_back(mesh_.cell(star[seed]));
-            std::vector<std::size_t> stack{seed};
-            star_part_[seed] = part;
-            while (!stack.empty()) {
-                const TetId t = star[stack.back()];
-                stack.pop_back();
-                const unsigned at = tets_.find_corner(t, hole_.vertex);
-                for (unsigned f = 0; f < 4; ++f) {
-                    if (f == at || mesh_.facet_at(TetFace{t, f}).valid()) continue;
-                    const std::size_t n = index(tets_.across(t, f).tet());
-                    if (star_part_[n] != kNone) continue;
-                    star_part_[n] = part;
-                    stack.push_back(n);
+        const std::size_t n = hole_.star.size(), most_edges = hole_.link.size() * hole_.link.size();
+        if (l_.link_edges.size() < most_edges) l_.link_edges.resize(most_edges);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Hole::LinkFace& c = hole_.link_faces[i];
+            for (std::size_t k = 0; k < 3; ++k) on_edge(c[k], c[(k + 1) % 3]) = static_cast<std::uint32_t>(i);
+        }
+        l_.star_part.assign(n, kNone);
+        l_.cell_of_part.clear();
+        l_.stack.clear();
+        for (std::size_t seed = 0; seed < n; ++seed) {
+            if (l_.star_part[seed] != kNone) continue;
+            const auto part = static_cast<std::uint32_t>(l_.cell_of_part.size());
+            l_.cell_of_part.push_back(mesh_.cell(hole_.star[seed]));
+            l_.star_part[seed] = part;
+            l_.stack.push_back(seed);
+            while (!l_.stack.empty()) {
+                const std::size_t i = l_.stack.back();
+                l_.stack.pop_back();
+                const TetId t = hole_.star[i];
+                const TetLabels* const labels = mesh_.has_labels(t) ? &mesh_.labels(t) : nullptr;
+                const auto& corner = kFaceCorners[hole_.boundary[i].inside.face()];
+                const Hole::LinkFace& c = hole_.link_faces[i];
+                for (std::size_t k = 0; k < 3; ++k) {
+                    if (labels != nullptr && labels->facets[corner[k]].valid()) continue;
+                    const std::uint32_t j = on_edge(c[(k + 2) % 3], c[(k + 1) % 3]);
+                    if (l_.star_part[j] != kNone) continue;
+                    l_.star_part[j] = part;
+                    l_.stack.push_back(j);
                 }
             }
         }
     }
 
-    Loop& loop_of(FacetId f) {
-        for (Loop& l : loops_)
-            if (l.facet == f) return l;
-        loops_.push_back({f, {}, 0, 0});
-        return loops_.back();
+    std::size_t loop_of(FacetId f) {
+        const auto loop = std::find_if(l_.loops.begin(), l_.loops.end(), [&](const Loop& l) { return l.facet == f; });
+        const auto number = static_cast<std::size_t>(loop - l_.loops.begin());
+        if (loop == l_.loops.end()) l_.loops.push_back({f, 0, 0});
+        return number;
     }
 
-    void collect_labels() {
-        const VertexId v = hole_.vertex;
+    /// @return is there a labelled face through the vertex?
+    bool collect_labels() {
+        bool is_parted = false;
+        l_.loops.clear();
+        l_.loop_faces.clear();
+        l_.ends.clear();
+        l_.segments.clear();
+        l_.on_segment.assign(hole_.link.size(), 0);
         for (std::size_t i = 0; i < hole_.star.size(); ++i) {
             const TetId t = hole_.star[i];
             if (!mesh_.has_labels(t)) continue;
-            const TetLabels& l = mesh_.labels(t);
-            const auto& c = tets_.corners(t);
+            const TetLabels& labels = mesh_.labels(t);
+            const unsigned apex = hole_.boundary[i].inside.face();
+            Corners c{};
+            for (std::size_t k = 0; k < 3; ++k) c[kFaceCorners[apex][k]] = hole_.link_faces[i][k];
             for (unsigned e = 0; e < 6; ++e) {
-                if (!l.segments[e].valid()) continue;
-                const VertexId a = c[kEdgeCorners[e][0]], b = c[kEdgeCorners[e][1]];
-                if (a == v || b == v) {
-                    const VertexId end = a == v ? b : a;
-                    if (std::find(ends_.begin(), ends_.end(), end) == ends_.end()) ends_.push_back(end);
-                } else {
-                    segments_.push_back({a, b, l.segments[e]});
+                if (!labels.segments[e].valid()) continue;
+                const unsigned a = kEdgeCorners[e][0], b = kEdgeCorners[e][1];
+                if (a != apex && b != apex) {
+                    note_segment(c[a], c[b], labels.segments[e]);
+                } else if (const std::uint32_t end = c[a == apex ? b : a]; std::find(l_.ends.begin(), l_.ends.end(), end) == l_.ends.end()) {
+                    l_.ends.push_back(end);
                 }
             }
             for (unsigned f = 0; f < 4; ++f) {
-                if (!l.facets[f].valid() || c[f] == v) continue;
+                if (f == apex || !labels.facets[f].valid()) continue;
+                is_parted = true;
                 if (t > tets_.across(t, f).tet()) continue;  // count each face once
-                Loop& loop = loop_of(l.facets[f]);
-                ++loop.faces;
-                for (const VertexId w : tets_.face_corners(TetFace{t, f}))
-                    if (w != v && std::find(loop.vertices.begin(), loop.vertices.end(), w) == loop.vertices.end()) loop.vertices.push_back(w);
+                const unsigned g = kFaceCorners[f][0] == apex ? kFaceCorners[f][1] : kFaceCorners[f][0];
+                const std::size_t loop = loop_of(labels.facets[f]);
+                ++l_.loops[loop].faces;
+                l_.loop_faces.push_back({loop, {c[g], c[6 - apex - f - g]}});
             }
         }
-        if (ends_.size() == 2) {
-            for (Loop& loop : loops_) {
-                // Faces of the facet at one end count its fans: one, or two where the facet goes on beyond the segment.
-                for (const TetId t : hole_.star) {
-                    if (!mesh_.has_labels(t)) continue;
-                    for (unsigned f = 0; f < 4; ++f) {
-                        if (mesh_.labels(t).facets[f] != loop.facet || t > tets_.across(t, f).tet()) continue;
-                        const auto fc = tets_.face_corners(TetFace{t, f});
-                        const bool at_vertex = std::find(fc.begin(), fc.end(), v) != fc.end();
-                        if (at_vertex && std::find(fc.begin(), fc.end(), ends_[0]) != fc.end()) ++loop.fans;
-                    }
-                }
-            }
-        }
+        // Faces of a facet at one end count its fans: one, or two where the facet goes on beyond the segment.
+        if (!l_.ends.empty())
+            for (const LoopFace& f : l_.loop_faces)
+                if (f.corners[0] == l_.ends[0] || f.corners[1] == l_.ends[0]) ++l_.loops[f.loop].fans;
+        return is_parted;
     }
 
-    [[nodiscard]] FacetId candidate_facet(std::size_t i, unsigned f) const {
-        const auto& c = hole_.filling[i];
-        for (const Loop& loop : loops_) {
-            bool all = true;
-            for (unsigned k = 0; k < 4 && all; ++k)
-                if (k != f) all = std::find(loop.vertices.begin(), loop.vertices.end(), c[k]) != loop.vertices.end();
-            if (all) return loop.facet;
+    void note_segment(std::uint32_t a, std::uint32_t b, SegmentId s) {
+        l_.segments.push_back({key_of(a, b), s});
+        l_.on_segment[a] = l_.on_segment[b] = 1;
+    }
+
+    [[nodiscard]] std::size_t words_of_loops() const { return (l_.loops.size() + 63) / 64; }
+    void mark_loops() {
+        const std::size_t words = words_of_loops();
+        l_.on_loops.assign(words * hole_.link.size(), 0);
+        for (const LoopFace& f : l_.loop_faces)
+            for (const std::uint32_t v : f.corners) l_.on_loops[words * v + f.loop / 64] |= std::uint64_t{1} << (f.loop % 64);
+    }
+
+    /// The first loop that has all corners of the face, or kNone.
+    [[nodiscard]] std::size_t candidate_loop(const Corners& c, unsigned f) const {
+        const auto& [a, b, d] = kFaceCorners[f];
+        const std::size_t words = words_of_loops();
+        for (std::size_t w = 0; w < words; ++w) {
+            const std::uint64_t common = l_.on_loops[words * c[a] + w] & l_.on_loops[words * c[b] + w] & l_.on_loops[words * c[d] + w];
+            if (common != 0) return 64 * w + static_cast<std::size_t>(std::countr_zero(common));
         }
-        return {};
+        return kNone;
+    }
+
+    /// Labels of the hole's boundary.
+    void inherit_facets() {
+        l_.facets.assign(hole_.filling.size(), {});
+        for (std::size_t i = 0; i < hole_.filling.size(); ++i)
+            for (unsigned f = 0; f < 4; ++f)
+                if (const std::uint32_t other = hole_.filling_opposite[i][f]; !is_inside(other))
+                    l_.facets[i][f] = mesh_.facet_at(hole_.boundary[other & ~Hole::kBoundaryBit].inside);
     }
 
     bool flood() {
         const std::size_t n = hole_.filling.size();
-        part_.assign(n, kNone);
-        new_labels_.assign(n, TetLabels{});
-        std::vector<std::size_t> stack;
+        l_.part.assign(n, kNone);
+        l_.stack.clear();
         for (std::size_t i = 0; i < n; ++i)
             for (unsigned f = 0; f < 4; ++f) {
                 const std::uint32_t other = hole_.filling_opposite[i][f];
-                if ((other & Hole::kBoundaryBit) == 0) continue;
-                const std::size_t b = other & ~Hole::kBoundaryBit;
-                const TetFace inside = hole_.boundary[b].inside;
-                new_labels_[i].facets[f] = mesh_.facet_at(inside);
-                const std::uint32_t part = star_part_[b];  // boundary face b belongs to star tetrahedron b
-                if (part_[i] == kNone) {
-                    part_[i] = part;
-                    stack.push_back(i);
-                } else if (part_[i] != part) {
-                    return false;
-                }
+                if (!is_inside(other) && !reach(i, l_.star_part[other & ~Hole::kBoundaryBit])) return false;
             }
         while (true) {
-            while (!stack.empty()) {
-                const std::size_t i = stack.back();
-                stack.pop_back();
+            while (!l_.stack.empty()) {
+                const std::size_t i = l_.stack.back();
+                l_.stack.pop_back();
                 for (unsigned f = 0; f < 4; ++f) {
                     const std::uint32_t other = hole_.filling_opposite[i][f];
-                    if ((other & Hole::kBoundaryBit) != 0 || candidate_facet(i, f).valid()) continue;
-                    const std::size_t j = other / 4;
-                    if (part_[j] == kNone) {
-                        part_[j] = part_[i];
-                        stack.push_back(j);
-                    } else if (part_[j] != part_[i]) {
-                        return false;
-                    }
+                    if (is_inside(other) && candidate_loop(hole_.filling[i], f) == kNone && !reach(other / 4, l_.part[i])) return false;
                 }
             }
             // What is left lies flat between faces of one facet: it goes to a neighbour, rather outside than inside.
             std::size_t chosen = n;
             std::uint32_t part = kNone;
             for (std::size_t i = 0; i < n; ++i) {
-                if (part_[i] != kNone) continue;
+                if (l_.part[i] != kNone) continue;
                 for (unsigned f = 0; f < 4; ++f) {
                     const std::uint32_t other = hole_.filling_opposite[i][f];
-                    if ((other & Hole::kBoundaryBit) != 0) continue;
-                    const std::uint32_t theirs = part_[other / 4];
+                    if (!is_inside(other)) continue;
+                    const std::uint32_t theirs = l_.part[other / 4];
                     if (theirs == kNone) continue;
-                    const bool outside = !mesh_.is_filled(cell_of_part_[theirs]);
-                    if (part == kNone || (outside && mesh_.is_filled(cell_of_part_[part]))) {
+                    const bool outside = !mesh_.is_filled(l_.cell_of_part[theirs]);
+                    if (part == kNone || (outside && mesh_.is_filled(l_.cell_of_part[part]))) {
                         chosen = i;
                         part = theirs;
                     }
                 }
             }
             if (chosen == n) break;
-            part_[chosen] = part;
-            stack.push_back(chosen);
+            l_.part[chosen] = part;
+            l_.stack.push_back(chosen);
         }
-        return std::find(part_.begin(), part_.end(), kNone) == part_.end();
+        return std::find(l_.part.begin(), l_.part.end(), kNone) == l_.part.end();
+    }
+
+    /// @return false if the filling's tetrahedron is in another part
+    bool reach(std::size_t i, std::uint32_t part) {
+        if (l_.part[i] != kNone) return l_.part[i] == part;
+        l_.part[i] = part;
+        l_.stack.push_back(i);
+        return true;
     }
 
     bool find_surface() {
-        std::vector<std::size_t> count(loops_.size(), 0);
+        l_.count.assign(l_.loops.size(), 0);
         for (std::size_t i = 0; i < hole_.filling.size(); ++i)
             for (unsigned f = 0; f < 4; ++f) {
                 const std::uint32_t other = hole_.filling_opposite[i][f];
-                if ((other & Hole::kBoundaryBit) != 0 || part_[other / 4] == part_[i]) continue;
-                const FacetId facet = candidate_facet(i, f);
-                if (!facet.valid()) return false;
-                new_labels_[i].facets[f] = facet;
-                if (other / 4 > i) ++count[static_cast<std::size_t>(&loop_of(facet) - loops_.data())];
+                if (!is_inside(other) || l_.part[other / 4] == l_.part[i]) continue;
+                const std::size_t loop = candidate_loop(hole_.filling[i], f);
+                if (loop == kNone) return false;
+                l_.facets[i][f] = l_.loops[loop].facet;
+                if (other / 4 > i) ++l_.count[loop];
             }
         // A disk of n faces about an inner vertex becomes n - 2 triangles; a fan of n at a segment n - 1.
-        for (std::size_t l = 0; l < loops_.size(); ++l) {
-            const std::size_t lost = ends_.empty() ? 2 : loops_[l].fans;
-            if (loops_[l].faces < lost || count[l] != loops_[l].faces - lost) return false;
+        for (std::size_t l = 0; l < l_.loops.size(); ++l) {
+            const std::size_t lost = l_.ends.empty() ? 2 : l_.loops[l].fans;
+            if (l_.loops[l].faces < lost || l_.count[l] != l_.loops[l].faces - lost) return false;
         }
         return true;
     }
 
+    /// Does the filling have the edge between the two ends?
     bool segment_survives() {
-        if (ends_.empty()) return true;
-        if (ends_.size() != 2) return false;
-        segments_.push_back({ends_[0], ends_[1], SegmentId{mesh_.info(hole_.vertex).carrier_id}});
-        for (const auto& c : hole_.filling)
-            if (std::find(c.begin(), c.end(), ends_[0]) != c.end() && std::find(c.begin(), c.end(), ends_[1]) != c.end()) return true;
-        return false;
+        if (l_.ends.size() != 2) return false;
+        const std::uint32_t a = l_.ends[0], b = l_.ends[1];
+        note_segment(a, b, SegmentId{mesh_.info(hole_.vertex).carrier_id});
+        return std::any_of(hole_.filling.begin(), hole_.filling.end(), [&](const Corners& c) { return corner_of(c, a) < 4 && corner_of(c, b) < 4; });
     }
 
     ConformingMesh& mesh_;
     const TetStore& tets_;
     const Hole& hole_;
-    std::vector<std::uint32_t> star_part_, part_;
-    std::vector<CellId> cell_of_part_;
-    std::vector<Loop> loops_;
-    std::vector<VertexId> ends_;         // of the subsegments at the vertex
-    std::vector<Subsegment> segments_;   // labelled edges of the link, and the one that heals
-    std::vector<TetLabels> new_labels_;  // faces only
+    ConformingMesh::HoleLabels& l_;
 };
 
 bool ConformingMesh::remove(const Hole& hole) {

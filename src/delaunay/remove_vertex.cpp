@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vertex removal. The hole that a star leaves is filled by gift wrapping: the tetrahedron on a face is the one whose perturbed
-// circumsphere is empty of the other link vertices, found by a tournament, O(faces x vertices) with about 26 x 15 tests in a
-// refined mesh. Because the perturbation makes the triangulation unique and free of flat tetrahedra, every face finds its partner
-// and the filling fits the boundary [Devillers03].
+// circumsphere is empty of the other link vertices, O(faces x vertices) with about 26 x 15 tests in a refined mesh. The static filter
+// nominates it and sees nearly all others lose to it; a tournament decides among those that are left. Because the perturbation makes
+// the triangulation unique and free of flat tetrahedra, every face finds its partner and the filling fits the boundary [Devillers03].
 #include <algorithm>
+#include <bit>
 
 #include "core/check.hpp"
 #include "delaunay/collinear.hpp"
@@ -14,19 +15,14 @@ namespace wellmesh {
 /// Fills one hole; lives for one call of find_hole, on the hole's scratch.
 class HoleFiller {
 public:
-    HoleFiller(Triangulation& mesh, Hole& hole) : mesh_(mesh), hole_(hole), open_(hole.scratch.open), candidates_(hole.scratch.candidates), open_at_(hole.scratch.open_at) {
-        open_.clear();
-        open_at_.clear();
-    }
+    HoleFiller(Triangulation& mesh, Hole& hole)
+        : mesh_(mesh), hole_(hole), faces_(hole.scratch.faces), open_(hole.scratch.open), buckets_(hole.scratch.buckets) {}
 
     bool fill() {
         collect_boundary();
-        candidates_.clear();
-        for (std::uint32_t d = 1; d < mesh_.local_count_; ++d) candidates_.push_back(d);
         while (!open_.empty()) {
-            const Open face = open_.back();
-            open_.pop_back();
-            count(face.corners, -1);
+            const Face face = faces_[open_.back()];
+            close(open_.back());
             if (!wrap(face)) return false;
             if (hole_.filling.size() > 8 * hole_.boundary.size() + 64) return false;  // can't happen: guards against a broken tie rule
         }
@@ -34,45 +30,67 @@ public:
     }
 
 private:
-    using Slots = Hole::Slots;
-    using Open = Hole::OpenFace;
+    using Corners = Hole::LinkFace;
+    using Face = Hole::Face;
+    static constexpr std::uint32_t kNone = 0xffffffffU;
 
-    static std::uint64_t key_of(Slots s) {
-        std::sort(s.begin(), s.end());
-        return (std::uint64_t{s[0]} << 42) | (std::uint64_t{s[1]} << 21) | s[2];
+    static std::uint64_t key_of(const Corners& c) {
+        const std::uint32_t low = std::min(c[0], c[1]), high = std::max(c[0], c[1]);
+        const std::uint64_t least = std::min(low, c[2]), middle = std::max(low, std::min(high, c[2])), most = std::max(high, c[2]);
+        return (least << 42) | (middle << 21) | most;
     }
-    [[nodiscard]] VertexId vertex(std::uint32_t slot) const { return mesh_.local_[slot]; }
-    [[nodiscard]] const Vec3& at(std::uint32_t slot) const { return mesh_.point(vertex(slot)); }
+    [[nodiscard]] const Vec3& at(std::uint32_t number) const { return mesh_.point(hole_.link[number]); }
+    [[nodiscard]] std::uint32_t link_size() const { return static_cast<std::uint32_t>(hole_.link.size()); }
 
     void collect_boundary() {
         mesh_.clear_local_numbers(3 * hole_.star.size());
         hole_.boundary.clear();
+        hole_.link_faces.clear();
         hole_.filling.clear();
         hole_.filling_opposite.clear();
+        faces_.clear();
+        open_.clear();
+        shift_ = 64U - static_cast<unsigned>(std::bit_width(4 * hole_.star.size()));
+        buckets_.assign(std::size_t{1} << (64 - shift_), kNone);
         has_infinity_ = false;
         for (const TetId t : hole_.star) {
-            const unsigned f = mesh_.tets_.find_corner(t, hole_.vertex);
-            const TetFace inside{t, f};
-            Slots s{};
+            const TetFace inside{t, mesh_.tets_.find_corner(t, hole_.vertex)};
+            Corners c{};
             const auto corners = mesh_.tets_.face_corners(inside);
             for (std::size_t k = 0; k < 3; ++k) {
-                s[k] = mesh_.local_number(corners[k]);
-                has_infinity_ |= s[k] == 0;
+                c[k] = mesh_.local_number(corners[k]);
+                has_infinity_ |= c[k] == 0;
             }
-            const TetFace outside = mesh_.tets_.across(inside);
-            open_.push_back({s, key_of(s), static_cast<std::uint32_t>(hole_.boundary.size()) | Hole::kBoundaryBit,
-                             mesh_.tets_.corner(outside.tet(), outside.face())});
-            count(s, 1);
-            hole_.boundary.push_back({inside, outside});
+            const auto index = static_cast<std::uint32_t>(hole_.boundary.size());
+            open(c, key_of(c), index | Hole::kBoundaryBit);
+            hole_.boundary.push_back({inside, mesh_.tets_.across(inside)});
+            hole_.link_faces.push_back(c);
         }
+        hole_.link.assign(mesh_.local_.begin(), mesh_.local_.begin() + mesh_.local_count_);
+        hole_.scratch.points.reset(hole_.link.size());
+        for (std::uint32_t i = 1; i < link_size(); ++i) hole_.scratch.points.set(i, at(i));
     }
 
-    /// Keeps count of the open faces at each vertex. One without has no tetrahedron to come: it is a candidate no more.
-    void count(const Slots& corners, std::int32_t by) {
-        for (const std::uint32_t s : corners) {
-            if (s >= open_at_.size()) open_at_.resize(s + 1, 0);
-            open_at_[s] += by;
-        }
+    std::uint32_t& bucket_of(std::uint64_t key) { return buckets_[(key * 0x9e3779b97f4a7c15U) >> shift_]; }
+    void open(const Corners& corners, std::uint64_t key, std::uint32_t owner) {
+        const auto face = static_cast<std::uint32_t>(faces_.size());
+        std::uint32_t& bucket = bucket_of(key);
+        faces_.push_back({corners, owner, key, bucket, static_cast<std::uint32_t>(open_.size())});
+        bucket = face;
+        open_.push_back(face);
+    }
+    /// It stays in its bucket: hardly any is looked for there again.
+    void close(std::uint32_t face) {
+        const std::uint32_t place = faces_[face].place, last = open_.back();
+        open_[place] = last;
+        faces_[last].place = place;
+        faces_[face].place = kNone;
+        open_.pop_back();
+    }
+    [[nodiscard]] std::uint32_t find_open(std::uint64_t key) {
+        std::uint32_t face = bucket_of(key);
+        while (face != kNone && (faces_[face].key != key || faces_[face].place == kNone)) face = faces_[face].next;
+        return face;
     }
 
     /// Is d in conflict with the ghost on hull face (a, b, c), positive side outside?
@@ -80,7 +98,7 @@ private:
         const Sign side = mesh_.filter_.orient3d(at(a), at(b), at(c), at(d));
         if (side != Sign::zero) return side == Sign::positive;
         // Coplanar: any point below the plane makes a tetrahedron whose circumsphere cuts the plane in the circle of abc.
-        for (std::uint32_t z = 1; z < mesh_.local_count_; ++z) {
+        for (std::uint32_t z = 1; z < link_size(); ++z) {
             const Sign below = mesh_.filter_.orient3d(at(a), at(b), at(c), at(z));
             if (below == Sign::zero) continue;
             const bool inside = below == Sign::positive
@@ -95,67 +113,69 @@ private:
     /// a point at 0 must not meet one at 180 in the tournament: they are coplanar.
     [[nodiscard]] bool folds_back(std::uint32_t a, std::uint32_t b, const Vec3& w, std::uint32_t d) const {
         if (mesh_.filter_.orient3d(at(a), at(b), w, at(d)) != Sign::zero) return false;
-        for (std::uint32_t z = 1; z < mesh_.local_count_; ++z) {
+        for (std::uint32_t z = 1; z < link_size(); ++z) {
             const Sign side = mesh_.filter_.orient3d(at(a), at(b), w, at(z));
             if (side != Sign::zero) return mesh_.filter_.orient3d(at(a), at(b), at(d), at(z)) == side;
         }
         return false;
     }
 
-    std::uint32_t best_apex(Slots& s, VertexId behind) {
-        constexpr std::uint32_t kNobody = 0xffffffffU;
-        std::uint32_t best = kNobody;
-        if (s[0] == 0 || s[1] == 0 || s[2] == 0) {
-            // (s0, s1, inf, d) positive means that hull face (s1, s0, d) has its positive side outside.
-            while (s[2] != 0) s = {s[1], s[2], s[0]};
-            for (std::uint32_t d = 1; d < mesh_.local_count_; ++d) {
-                if (d == s[0] || d == s[1] || collinear(at(s[0]), at(s[1]), at(d)) || folds_back(s[0], s[1], mesh_.point(behind), d)) continue;
-                if (best == kNobody || beats_ghost(s[1], s[0], best, d)) best = d;
-            }
-            return best;
+    /// The corner opposite to the face of what is behind it.
+    [[nodiscard]] const Vec3& point_behind(const Face& face) const {
+        if ((face.owner & Hole::kBoundaryBit) == 0) return at(hole_.filling[face.owner / 4][face.owner % 4]);
+        const TetFace outside = hole_.boundary[face.owner & ~Hole::kBoundaryBit].outside;
+        return mesh_.point(mesh_.tets_.corner(outside.tet(), outside.face()));
+    }
+
+    /// (c0, c1, inf, d) positive means that hull face (c1, c0, d) has its positive side outside.
+    [[nodiscard]] std::uint32_t best_apex_at_infinity(const Corners& c, const Vec3& behind) const {
+        std::uint32_t best = kNone;
+        for (std::uint32_t d = 1; d < link_size(); ++d) {
+            if (d == c[0] || d == c[1] || collinear(at(c[0]), at(c[1]), at(d)) || folds_back(c[0], c[1], behind, d)) continue;
+            if (best == kNone || beats_ghost(c[1], c[0], best, d)) best = d;
         }
-        const Vec3 &a = at(s[0]), &b = at(s[1]), &c = at(s[2]);
-        for (const std::uint32_t d : candidates_) {
-            if (d == s[0] || d == s[1] || d == s[2]) continue;
-            if (mesh_.filter_.orient3d(a, b, c, at(d)) != Sign::positive) continue;
-            if (best == kNobody || mesh_.filter_.insphere_perturbed_padded(a, b, c, at(best), at(d)) == Sign::positive) best = d;
-        }
-        if (best == kNobody && has_infinity_) return 0;
         return best;
     }
 
-    bool wrap(Open face) {
-        Slots s = face.corners;
-        const std::uint32_t apex = best_apex(s, face.behind);
-        if (apex == 0xffffffffU) return false;
+    [[nodiscard]] std::uint32_t best_apex(const Corners& corners) {
+        std::uint32_t best = mesh_.filter_.nominate_apex(hole_.scratch.points, corners, hole_.scratch.rivals);
+        const Vec3 &a = at(corners[0]), &b = at(corners[1]), &c = at(corners[2]);
+        for (const std::uint32_t d : hole_.scratch.rivals) {
+            if (mesh_.filter_.orient3d(a, b, c, at(d)) != Sign::positive) continue;
+            if (best == kNone || mesh_.filter_.insphere_perturbed_padded(a, b, c, at(best), at(d)) == Sign::positive) best = d;
+        }
+        if (best == kNone && has_infinity_) return 0;
+        return best;
+    }
+
+    bool wrap(const Face& face) {
+        Corners c = face.corners;
+        const bool at_infinity = c[0] == 0 || c[1] == 0 || c[2] == 0;
+        if (at_infinity)
+            while (c[2] != 0) c = {c[1], c[2], c[0]};
+        const std::uint32_t apex = at_infinity ? best_apex_at_infinity(c, point_behind(face)) : best_apex(c);
+        if (apex == kNone) return false;
         const auto index = static_cast<std::uint32_t>(hole_.filling.size());
         // Corner order as in Triangulation::insert_vertex: infinity last.
-        std::array<std::uint32_t, 4> corners{};
-        if (s[2] == 0) corners = {s[1], s[0], apex, 0};
-        else corners = {s[0], s[1], s[2], apex};
-        hole_.filling.push_back({vertex(corners[0]), vertex(corners[1]), vertex(corners[2]), vertex(corners[3])});
+        const std::array<std::uint32_t, 4> corners = at_infinity ? std::array{c[1], c[0], apex, 0U} : std::array{c[0], c[1], c[2], apex};
+        hole_.filling.push_back(corners);
         hole_.filling_opposite.push_back({});
-        const unsigned base = s[2] == 0 ? 2 : 3;  // corner opposite to the face that was wrapped
+        const unsigned base = at_infinity ? 2 : 3;  // corner opposite to the face that was wrapped
         for (unsigned f = 0; f < 4; ++f) {
             if (f == base) {
                 pair(index, f, face.owner);
                 continue;
             }
             // From the far side the face is listed the other way round.
-            const Slots mine{corners[kFaceCorners[f][0]], corners[kFaceCorners[f][2]], corners[kFaceCorners[f][1]]};
+            const Corners mine{corners[kFaceCorners[f][0]], corners[kFaceCorners[f][2]], corners[kFaceCorners[f][1]]};
             const std::uint64_t key = key_of(mine);
-            auto it = std::find_if(open_.begin(), open_.end(), [&](const Open& o) { return o.key == key; });
-            if (it == open_.end()) {
-                open_.push_back({mine, key, 4 * index + f, vertex(corners[f])});
-                count(mine, 1);
+            if (const std::uint32_t other = find_open(key); other == kNone) {
+                open(mine, key, 4 * index + f);
             } else {
-                pair(index, f, it->owner);
-                count(mine, -1);
-                *it = open_.back();
-                open_.pop_back();
+                pair(index, f, faces_[other].owner);
+                close(other);
             }
         }
-        std::erase_if(candidates_, [&](std::uint32_t d) { return open_at_[d] == 0; });
         return true;
     }
 
@@ -166,9 +186,10 @@ private:
 
     Triangulation& mesh_;
     Hole& hole_;
-    std::vector<Open>& open_;
-    std::vector<std::uint32_t>& candidates_;  // finite vertices that a tetrahedron may still get
-    std::vector<std::int32_t>& open_at_;      // open faces at each vertex
+    std::vector<Face>& faces_;
+    std::vector<std::uint32_t>& open_;
+    std::vector<std::uint32_t>& buckets_;
+    unsigned shift_ = 0;  // from a key's hash to its bucket
     bool has_infinity_ = false;
 };
 
@@ -191,7 +212,8 @@ void Triangulation::remove_vertex(const Hole& hole) {
     for (std::size_t i = 0; i < hole.filling.size(); ++i) {
         const TetId t = i < hole.star.size() ? hole.star[i] : tets_.allocate();
         new_tets_.push_back(t);
-        tets_.set_corners(t, hole.filling[i]);
+        const auto& c = hole.filling[i];
+        tets_.set_corners(t, {hole.link[c[0]], hole.link[c[1]], hole.link[c[2]], hole.link[c[3]]});
     }
     for (std::size_t i = hole.filling.size(); i < hole.star.size(); ++i) tets_.release(hole.star[i]);
     for (std::size_t i = 0; i < hole.filling.size(); ++i) {
@@ -201,13 +223,13 @@ void Triangulation::remove_vertex(const Hole& hole) {
             if ((other & Hole::kBoundaryBit) != 0) tets_.connect(mine, outside_[other & ~Hole::kBoundaryBit]);
             else if (other / 4 > i || (other / 4 == i)) tets_.connect(mine, TetFace{new_tets_[other / 4], other % 4});
         }
-        for (const VertexId v : hole.filling[i])
+        for (const VertexId v : tets_.corners(new_tets_[i]))
             if (v != kInfiniteVertex) vertices_[v.index()].tet = new_tets_[i];
     }
     // A ghost is a poor place to start walking from: prefer finite tetrahedra.
     for (std::size_t i = 0; i < hole.filling.size(); ++i)
-        if (hole.filling[i][3] != kInfiniteVertex)
-            for (const VertexId v : hole.filling[i]) vertices_[v.index()].tet = new_tets_[i];
+        if (hole.filling[i][3] != 0)
+            for (const VertexId v : tets_.corners(new_tets_[i])) vertices_[v.index()].tet = new_tets_[i];
     vertices_[hole.vertex.index()].tet = TetId{};
     last_located_ = new_tets_[0];
 }

@@ -47,25 +47,31 @@ struct Cavity {
 struct Hole {
     VertexId vertex{};
     std::vector<TetId> star;
-    std::vector<BoundaryFace> boundary;
-    std::vector<TetStore::Corners> filling;
+    /// Vertices of the link; infinity is number 0, whether it is one or not. These numbers stand for vertices below.
+    std::vector<VertexId> link;
+    using LinkFace = std::array<std::uint32_t, 3>;
+    std::vector<BoundaryFace> boundary;  ///< face i is of star tetrahedron i
+    std::vector<LinkFace> link_faces;    ///< its corners, listed as the star tetrahedron's face
+    std::vector<std::array<std::uint32_t, 4>> filling;
     /// For each filling tetrahedron and face: index of the neighbour in `filling`, times 4, plus its face; or, with the top bit
     /// set, index into `boundary`.
     std::vector<std::array<std::uint32_t, 4>> filling_opposite;
     static constexpr std::uint32_t kBoundaryBit = 0x80000000U;
 
-    using Slots = std::array<std::uint32_t, 3>;  // local vertex numbers; 0 is infinity
-    struct OpenFace {
-        Slots corners;        // listed so that the wanted apex lies on the positive side
-        std::uint64_t key;    // of the unordered triple
+    struct Face {
+        LinkFace corners;     // listed so that the wanted apex lies on the positive side
         std::uint32_t owner;  // what is behind: boundary index with top bit, or 4 * filling + face
-        VertexId behind;      // corner of the tetrahedron behind that is opposite to this face
+        std::uint64_t key;    // of the unordered triple
+        std::uint32_t next;   // in its bucket
+        std::uint32_t place;  // in `open`, or none
     };
     /// Of the search; of no use afterwards.
     struct Scratch {
-        std::vector<OpenFace> open;
-        std::vector<std::uint32_t> candidates;
-        std::vector<std::int32_t> open_at;
+        std::vector<Face> faces;             // all that have been open
+        std::vector<std::uint32_t> open;     // numbers of those that are
+        std::vector<std::uint32_t> buckets;  // the last face in each
+        PointColumns points;                 // of the link
+        std::vector<std::uint32_t> rivals;
     } scratch;
 };
 
