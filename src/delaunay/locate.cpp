@@ -63,20 +63,30 @@ bool Triangulation::collect_star(VertexId v, std::vector<TetId>& star) {
     const TetId seed = vertices_[v.index()].tet;
     if (!may_enter<kZoned>(seed)) return false;
     next_epoch();
-    star.push_back(seed);
-    mark_[seed.index()] = epoch_;
-    for (std::size_t i = 0; i < star.size(); ++i) {
+    std::uint32_t* const marks = mark_.data();
+    const std::uint32_t met = epoch_;
+    // Whether a neighbour has been met can't be foreseen: no branch. There is room for three that have.
+    constexpr std::size_t kRoom = 4;
+    std::size_t count = 1;
+    star.resize(8 * kRoom);
+    star[0] = seed;
+    marks[seed.index()] = met;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (star.size() < count + kRoom) star.resize(2 * star.size());
         const TetId t = star[i];
-        const unsigned at = tets_.find_corner(t, v);
-        for (unsigned f = 0; f < 4; ++f) {
-            if (f == at) continue;
+        for (const unsigned f : kOtherCorners[tets_.find_corner(t, v)]) {
             const TetId n = tets_.across(t, f).tet();
-            if (!may_enter<kZoned>(n)) return false;
-            if (mark_[n.index()] == epoch_) continue;
-            mark_[n.index()] = epoch_;
-            star.push_back(n);
+            if (!may_enter<kZoned>(n)) {
+                star.resize(count);
+                return false;
+            }
+            tets_.prefetch(n);
+            star[count] = n;
+            count += marks[n.index()] != met ? 1U : 0U;
+            marks[n.index()] = met;
         }
     }
+    star.resize(count);
     return true;
 }
 

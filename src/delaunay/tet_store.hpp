@@ -20,6 +20,8 @@ namespace wellmesh {
 inline constexpr VertexId kInfiniteVertex{std::uint32_t{0xfffffffeU}};
 
 inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kFaceCorners{{{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
+/// The corners but one, ascending.
+inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kOtherCorners{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
 /// Edge e joins these two corners; edge 5 - e is the one opposite.
 inline constexpr std::array<std::array<std::uint8_t, 2>, 6> kEdgeCorners{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 /// kEdgeOf[i][j]: the edge between corners i and j.
@@ -56,10 +58,10 @@ public:
     [[nodiscard]] TetFace across(TetFace tf) const { return tet_[tf.tet().index()].opposite[tf.face()]; }
     [[nodiscard]] TetFace across(TetId t, unsigned f) const { return tet_[t.index()].opposite[f]; }
     [[nodiscard]] const std::array<TetFace, 4>& across_all(TetId t) const { return tet_[t.index()].opposite; }
-    /// Slot of v in t; 4 if v is no corner of t.
+    /// Slot of v in t; 4 if v is no corner of t. Without branches: they can't be foreseen.
     [[nodiscard]] unsigned find_corner(TetId t, VertexId v) const {
         const Corners& c = tet_[t.index()].corner;
-        return c[0] == v ? 0U : c[1] == v ? 1U : c[2] == v ? 2U : c[3] == v ? 3U : 4U;
+        return 4U - 4U * (c[0] == v ? 1U : 0U) - 3U * (c[1] == v ? 1U : 0U) - 2U * (c[2] == v ? 1U : 0U) - (c[3] == v ? 1U : 0U);
     }
     [[nodiscard]] std::array<VertexId, 3> face_corners(TetFace tf) const {
         const Corners& c = tet_[tf.tet().index()].corner;
