@@ -11,6 +11,7 @@
 
 #include "conforming/place_point.hpp"
 #include "core/rng.hpp"
+#include "support/acute_plcs.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
 #include "workshop.hpp"
@@ -203,6 +204,36 @@ TEST_P(Labels, ReinsertionElsewhereOnTheCarrierKeepsThem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Domains, Labels, ::testing::Combine(::testing::Range<std::size_t>(0, 5), ::testing::Values(0U, 4U), ::testing::Values(0.0, 1e3)));
+
+/// More facets at a vertex than a word has bits.
+TEST(FanOfSeventyOne, LosesVerticesOfItsSegmentWithoutATrace) {
+    StagedMesh staged(fan(71));
+    staged.conform();
+    ConformingMesh& mesh = staged.mesh;
+    Workshop workshop(staged, 37);
+    const auto& segments = staged.plc.segments;
+    const auto axis = std::find_if(segments.begin(), segments.end(), [](const auto& s) { return s.facets.size() == 71; });
+    ASSERT_NE(axis, segments.end());
+    const SegmentId id{static_cast<std::size_t>(axis - segments.begin())};
+    Cavity cavity;
+    Hole hole;
+    std::size_t removed = 0;
+    for (std::size_t i = 1; i < mesh.chain_of(id).size(); i += 2) {
+        const VertexId a = mesh.chain_of(id)[i - 1], b = mesh.chain_of(id)[i];
+        const Vec3 middle = project_to_segment(staged.plc, id, 0.5 * (mesh.point(a) + mesh.point(b)));
+        const Spot spot{middle, mesh.triangulation().tet_of(a), Placement::on_segment({a, b, id})};
+        const State before = state_of(mesh);
+        ASSERT_TRUE(mesh.triangulation().find_conflict_cavity(spot.point, spot.near, cavity));
+        if (mesh.would_break(cavity, spot.where)) continue;
+        const VertexId v = workshop.insert(spot, cavity);
+        ASSERT_EQ(staged.problem(false), "");
+        ASSERT_TRUE(mesh.triangulation().find_hole(v, hole));
+        ASSERT_TRUE(mesh.remove(hole));
+        ASSERT_TRUE(state_of(mesh) == before);
+        ++removed;
+    }
+    EXPECT_GT(removed, 0U);
+}
 
 TEST(FindSubface, SaysTheSameWhateverIsSuggested) {
     StagedMesh staged(all_synthetic_plcs().front().plc);
