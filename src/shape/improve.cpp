@@ -11,8 +11,8 @@
 namespace wellmesh {
 namespace {
 constexpr unsigned kMoveSamples = 30, kPatientMoveSamples = 60;
-constexpr unsigned kPatientPasses = 2;    // patience with moves saves vertices: smoothing and splitting come after
-constexpr unsigned kSmoothingRounds = 4;
+constexpr unsigned kPatientPasses = 2;    // patience with moves saves vertices: smoothing and splitting come after, as they take longer for each that they mend
+constexpr unsigned kSmoothingRounds = 2;
 constexpr double kWorthRepeating = 0.85;  // part of the bad tetrahedra that may be left for another pass or smoothing to be tried
 constexpr unsigned kSplitRounds = 16;     // on one rung,
 constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing out again, else removals and splits may undo each other for ever
@@ -105,6 +105,8 @@ RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) 
     if (last_resort == LastResort::none && !leaves_forced_ && !refiner_.gaps().any()) verdict = zones_.mend(samples);
     if (verdict != RunGuard::Verdict::go_on) return verdict;
     mending_.last_resort = {};
+    mending_.is_mostly_stuck = {};
+    if (!leaves_forced_ && refiner_.may_excuse()) mending_.is_mostly_stuck = [this](TetId t) { return refiner_.excuses(t); };
     if (last_resort != LastResort::none)
         mending_.last_resort = [this, last_resort](const Bad& bad, const Corners& order) { return try_last_resort(bad, order, last_resort == LastResort::remove_or_insert); };
     const auto may_go_on = [&](std::size_t waiting) {
@@ -158,18 +160,23 @@ RunGuard::Verdict ShapeImprover::smooth_around_bad(unsigned rings) {
     return verdict;
 }
 
-/// All that moves can do, then what single removals and insertions can.
+/// All that moves, single removals and insertions can do; then the same around what is left, smoothed.
 RunGuard::Verdict ShapeImprover::settle(LastResort last_resort) {
     RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
-    if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::none);
+    if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, last_resort);
     for (unsigned r = 0; r < kSmoothingRounds && !left().empty() && verdict == RunGuard::Verdict::go_on; ++r) {
         const std::size_t before = left().size();
         verdict = smooth_around_bad(1);
-        if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, LastResort::none);
+        if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, last_resort);
         if (!worth_it(before, left().size())) break;
     }
-    if (!left().empty() && verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, last_resort);
     return verdict;
+}
+
+/// What an acute angle forces, too, has its chance, but no smoothing around it: most of it is not to be mended.
+RunGuard::Verdict ShapeImprover::try_forced_too() {
+    const RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
+    return verdict == RunGuard::Verdict::go_on ? passes(kPatientMoveSamples, kPatientPasses, LastResort::remove_or_insert) : verdict;
 }
 
 /// Splits what is worse than this: of neighbours only the worst, as moves may mend the others then.
@@ -300,8 +307,9 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     given_up_.clear();
     leaves_forced_ = false;
     mover_.excuses = {};
-    RunGuard::Verdict verdict = settle(LastResort::remove_or_insert);
+    RunGuard::Verdict verdict = refiner_.may_excuse() ? try_forced_too() : RunGuard::Verdict::go_on;
     leave_forced_alone();
+    if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::remove_or_insert);
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left().empty() && rung < angle_deg + kRungDeg; rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices_at_start, reached);

@@ -73,6 +73,7 @@ private:
 
     RunGuard::Verdict aim_at(double angle_deg, std::size_t vertices_at_start);
     RunGuard::Verdict settle(LastResort last_resort);
+    RunGuard::Verdict try_forced_too();
     RunGuard::Verdict pass(unsigned samples, LastResort last_resort);
     RunGuard::Verdict passes(unsigned samples, unsigned most, LastResort last_resort);
     bool try_last_resort(const Bad& bad, const Corners& freest_first, bool removes);

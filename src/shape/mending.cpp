@@ -10,9 +10,13 @@ namespace {
 
 constexpr unsigned kTriesUntouched = 3;  // failures after which a tetrahedron rests until its neighbourhood changes
 constexpr std::uint32_t kLastTime = 1U << 31;  // of the clock at the begin of a pass
+constexpr std::uint64_t kFailures = 200, kFailuresPerMended = 20;  // after which only one in so many is tried of what is mostly stuck:
+constexpr std::uint64_t kSample = 16;                               // elsewhere it may fare better
 constexpr unsigned kTriesInAll = 4;      // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 
 }  // namespace
+
+bool Mending::Patience::allows() { return failed_ < kFailures + kFailuresPerMended * mended_ || ++refused_ % kSample == 0; }
 
 Mending Mending::for_zone(ConformingMesh& view, const TetJudge& judge, VertexMover& mover) {
     fit_arrays();
@@ -120,6 +124,7 @@ void Mending::begin_pass() {
 }
 
 bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
+    Patience patience;
     std::make_heap(heap_.begin(), heap_.end(), IsLater{});
     while (!heap_.empty()) {
         std::pop_heap(heap_.begin(), heap_.end(), IsLater{});
@@ -138,7 +143,13 @@ bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
             heap_.push_back(bad);
             return false;
         }
+        const bool is_stuck = is_mostly_stuck && is_mostly_stuck(t);
+        if (is_stuck && !patience.allows()) {
+            left_.push_back(bad);
+            continue;
+        }
         const Outcome outcome = mend(bad, samples);
+        if (is_stuck && outcome != Outcome::not_now) patience.note(outcome == Outcome::done);
         if (outcome == Outcome::failed) left_.push_back(bad);
         if (outcome == Outcome::left_zone) outside_.push_back(bad);
     }
@@ -154,13 +165,13 @@ void Mending::end_pass() {
     });
 }
 
-/// Done: the tetrahedron is gone, or not to be tried now.
+/// Done: the tetrahedron is gone.
 Mending::Outcome Mending::mend(const Bad& bad, unsigned samples) {
     std::uint32_t last_change = 0;
     for (const VertexId v : bad.corners) last_change = std::max(last_change, touched_[v.index()]);
     const std::uint64_t key = key_of(bad.corners);
     if (Stuck* const before = find_stuck(key)) {
-        if (before->pass == pass_) return Outcome::done;  // listed already; changes around it are for the next pass
+        if (before->pass == pass_) return Outcome::not_now;  // listed already; changes around it are for the next pass
         if (before->when < last_change) before->failures = 0;
         if (before->failures >= kTriesUntouched) {
             before->pass = pass_;

@@ -36,6 +36,8 @@ public:
     bool goes_beyond_shape = false;
     /// Tetrahedra for another turn: a view can't judge them. Empty: there are none.
     std::function<bool(TetId)> must_wait{};
+    /// Tetrahedra that are mostly tried in vain, so that a pass tries no more of them than it mends in a certain proportion. Empty: there are none.
+    std::function<bool(TetId)> is_mostly_stuck{};
     /// What to try when no move did. @return whether anything changed. Empty: nothing.
     std::function<bool(const Bad& bad, const TetStore::Corners& freest_first)> last_resort{};
     /// Asked for each tetrahedron of a pass, with the number of those that wait; false ends the pass.
@@ -88,7 +90,16 @@ private:
         std::uint32_t when = 0;
         std::uint32_t pass = 0, failures = 0;
     };
-    enum class Outcome : std::uint8_t { done, failed, left_zone };
+    /// How many of those that are mostly stuck are still to be tried in a pass.
+    class Patience {
+    public:
+        bool allows();
+        void note(bool was_mended) { ++(was_mended ? mended_ : failed_); }
+
+    private:
+        std::uint64_t mended_ = 0, failed_ = 0, refused_ = 0;
+    };
+    enum class Outcome : std::uint8_t { done, not_now, failed, left_zone };
 
     Outcome mend(const Bad& bad, unsigned samples);
     [[nodiscard]] Stuck* find_stuck(std::uint64_t key);
