@@ -11,6 +11,7 @@
 
 #include <algorithm>
 
+#include "core/infinity.hpp"
 #include "predicates/fp_environment.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -20,8 +21,6 @@
 
 namespace wellmesh {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 [[gnu::always_inline]] inline Vec3 minus(const Vec3& p, const Vec3& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
 [[gnu::always_inline]] inline double product(const Vec3& p, const Vec3& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
