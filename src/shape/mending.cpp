@@ -98,6 +98,14 @@ void Mending::collect(Workers& workers) {
             if (is_bad(t, how)) left_.push_back(listed(t, how));
 }
 
+void Mending::collect_touched() {
+    left_.insert(left_.end(), heap_.begin(), heap_.end());
+    heap_.clear();
+    drop_good();
+    std::sort(left_.begin(), left_.end());
+    left_.erase(std::unique(left_.begin(), left_.end(), [](const Bad& a, const Bad& b) { return a.corners == b.corners; }), left_.end());
+}
+
 void Mending::touch(const std::vector<TetId>& tets) {
     fit_arrays();
     ++clock_;
@@ -156,7 +164,9 @@ bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
     return true;
 }
 
-void Mending::end_pass() {
+void Mending::end_pass() { drop_good(); }
+
+void Mending::drop_good() {
     std::erase_if(left_, [&](Bad& b) {
         const TetId t = find_tet(mesh_, b.corners, b.last);
         if (!t.valid()) return true;

@@ -49,6 +49,8 @@ public:
     void forget_tries();
     /// All that is bad now, in left().
     void collect(Workers& workers);
+    /// The same, where all that has changed was told by touch(): left() is what it was and what has become bad since, as far as that is bad now.
+    void collect_touched();
     /// Begins a pass: what is left waits again.
     void begin_pass();
     /// Goes on until nothing waits. @return false: it was not to go on
@@ -105,6 +107,7 @@ private:
     [[nodiscard]] Stuck* find_stuck(std::uint64_t key);
     [[nodiscard]] bool is_bad(TetId t, double& how) const;
     [[nodiscard]] Bad listed(TetId t, double badness) const;
+    void drop_good();
     void fit_arrays();
 
     ConformingMesh& mesh_;

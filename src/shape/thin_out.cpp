@@ -6,7 +6,7 @@
 namespace wellmesh {
 namespace {
 
-constexpr std::size_t kTrialsPerExcess = 20;  // of old vertices, for each vertex that is too many: on large meshes not all can be tried
+constexpr std::size_t kTrialsPerExcess = 12;  // of old vertices, for each vertex that is too many: on large meshes not all can be tried
 constexpr std::size_t kFirstTrials = 600;       // that may fail before that proportion is asked of the vertices that went, too
 constexpr std::size_t kStride = 16;  // from one vertex to the next one tried: the first ones tell how it would be everywhere
 constexpr double kWorthGoingOn = 0.02;      // of the vertices must go in a sweep for another to be tried
