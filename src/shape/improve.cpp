@@ -13,6 +13,7 @@ namespace {
 constexpr unsigned kMoveSamples = 30, kPatientMoveSamples = 60;
 constexpr unsigned kPatientPasses = 2;    // patience with moves saves vertices: smoothing and splitting come after, as they take longer for each that they mend
 constexpr unsigned kSmoothingRounds = 2;
+constexpr double kFewLeft = 0.05;         // part of the bad tetrahedra: if no more are left, smoothing goes for those, too, that acute angles force
 constexpr double kWorthRepeating = 0.85;  // part of the bad tetrahedra that may be left for another pass or smoothing to be tried
 constexpr unsigned kSplitRounds = 16;     // on one rung,
 constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing out again, else removals and splits may undo each other for ever
@@ -173,7 +174,7 @@ RunGuard::Verdict ShapeImprover::settle(LastResort last_resort) {
     return verdict;
 }
 
-/// What an acute angle forces, too, has its chance, but no smoothing around it: most of it is not to be mended.
+/// What an acute angle forces, too, has its chance, before the neighbourhoods of the others are smoothed: mostly little of it is to be mended.
 RunGuard::Verdict ShapeImprover::try_forced_too() {
     const RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
     return verdict == RunGuard::Verdict::go_on ? passes(kPatientMoveSamples, kPatientPasses, LastResort::remove_or_insert) : verdict;
@@ -308,9 +309,11 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     given_up_.clear();
     leaves_forced_ = false;
     mover_.excuses = {};
+    const std::size_t at_first = left().size();
     RunGuard::Verdict verdict = refiner_.may_excuse() ? try_forced_too() : RunGuard::Verdict::go_on;
-    leave_forced_alone();
+    if (static_cast<double>(left().size()) > kFewLeft * static_cast<double>(at_first)) leave_forced_alone();
     if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::remove_or_insert);
+    leave_forced_alone();
     bool reached = true;
     for (double rung = kRungDeg; verdict == RunGuard::Verdict::go_on && reached && !left().empty() && rung < angle_deg + kRungDeg; rung += kRungDeg)
         verdict = climb(cosine_of_degrees(std::min(rung, angle_deg)), vertices_at_start, reached);

@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::size_t kTrialsPerExcess = 12;  // of old vertices, for each vertex that is too many: on large meshes not all can be tried
 constexpr std::size_t kFirstTrials = 600;       // that may fail before that proportion is asked of the vertices that went, too
+constexpr double kNegligible = 0.005;  // part of the vertices that may be too many: each that goes takes as long as hundreds of tetrahedra took to make
 constexpr std::size_t kStride = 16;  // from one vertex to the next one tried: the first ones tell how it would be everywhere
 constexpr double kWorthGoingOn = 0.02;      // of the vertices must go in a sweep for another to be tried
 
@@ -31,6 +32,7 @@ RunGuard::Verdict Thinning::sweep(std::size_t first, std::size_t enough, std::si
 }
 
 RunGuard::Verdict Thinning::run(std::size_t first_new, std::size_t enough) {
+    enough += static_cast<std::size_t>(kNegligible * static_cast<double>(enough));
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     std::size_t before = 0;
     do {
