@@ -309,9 +309,12 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     given_up_.clear();
     leaves_forced_ = false;
     mover_.excuses = {};
-    const std::size_t at_first = left().size();
-    RunGuard::Verdict verdict = refiner_.may_excuse() ? try_forced_too() : RunGuard::Verdict::go_on;
-    if (static_cast<double>(left().size()) > kFewLeft * static_cast<double>(at_first)) leave_forced_alone();
+    RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
+    if (refiner_.may_excuse()) {
+        const std::size_t at_first = left().size();
+        verdict = try_forced_too();
+        if (static_cast<double>(left().size()) > kFewLeft * static_cast<double>(at_first)) leave_forced_alone();
+    }
     if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::remove_or_insert);
     leave_forced_alone();
     bool reached = true;
