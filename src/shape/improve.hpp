@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Raises the smallest dihedral angle of a conforming Delaunay mesh without leaving the Delaunay and Gabriel properties: block by block of space, the worst
 // tetrahedron of a block first, vertices of bad tetrahedra move along their carriers, in zones on several threads where there is much to do; where that
-// fails, the neighbourhood is smoothed towards the optimal Delaunay triangulation [ChenXu04] and moves are tried again; then a vertex is taken out, or put
-// in, where that makes everything better [LiTeng01, section 6].
+// fails, a vertex is taken out, or put in, where that makes everything better [LiTeng01, section 6]; then the neighbourhood is smoothed towards the optimal
+// Delaunay triangulation [ChenXu04] and all that is tried again. Most of what acute angles of the input force can't be mended: it is tried, but not for long.
 // What is left, mostly where the domain is one element thick, is split with the ordinary cascade, the smallest angles first, on a ladder of
 // angles: a rung that can't be reached leaves the mesh of the last one. In the end vertices that turn out to be superfluous go again (thin_out.hpp).
 //

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many tetrahedra a pass tries, and what it lists, where hardly a vertex can move: nearly all are the input's.
+#include "shape/mending.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "core/rng.hpp"
+#include "support/staged_mesh.hpp"
+#include "support/synthetic_plcs.hpp"
+
+namespace wellmesh::testing {
+namespace {
+
+Plc cube_with_points(std::size_t points) {
+    Plc plc = cube();
+    for (std::size_t k = 0; k < points; ++k) {
+        const auto in_the_middle = [&](std::uint64_t axis) { return 0.2 + 0.6 * static_cast<double>(mix64(k, axis) >> 11) * 0x1p-53; };
+        plc.vertices.push_back({in_the_middle(0), in_the_middle(1), in_the_middle(2)});
+    }
+    return plc;
+}
+
+/// Every tetrahedron is bad: none has only angles above 89 degrees.
+struct Immovable {
+    StagedMesh staged{cube_with_points(700)};
+    Refiner refiner{staged.mesh, staged.boundary, staged.guard, staged.options};
+    TetJudge judge{staged.mesh, refiner.sizes(), refiner.max_radius_edge()};
+    VertexMover mover{staged.mesh, staged.boundary, judge, 1};
+    Mending mending{staged.mesh, judge, mover};
+    std::size_t bad = 0;
+
+    Immovable() {
+        staged.conform();
+        judge.set_goal(std::cos(89 * std::numbers::pi / 180), TetJudge::kNoAspect);
+        mending.badness = [this](TetId t) { return judge.shape_badness(t); };
+        mending.collect(staged.workers);
+        bad = mending.left().size();
+        EXPECT_EQ(bad, staged.domain_tets());
+        EXPECT_GT(bad, 3500U);
+    }
+    [[nodiscard]] std::size_t most() const { return bad * 99 / 100; }
+    /// @return how many were tried
+    std::size_t pass(std::size_t one_is_mended_of) {
+        std::size_t tried = 0;
+        mending.last_resort = [&](const Bad&, const TetStore::Corners&) { return ++tried % one_is_mended_of == 0; };
+        mending.begin_pass();
+        EXPECT_TRUE(mending.pass(1, [](std::size_t) { return true; }));
+        mending.end_pass();
+        return tried;
+    }
+};
+
+TEST(Mending, APassTriesAllAndListsWhatIsLeft) {
+    Immovable m;
+    EXPECT_GE(m.pass(1'000'000), m.most());
+    EXPECT_GE(m.mending.left().size(), m.most());
+    EXPECT_TRUE(m.mending.waiting().empty());
+}
+
+TEST(Mending, WhatIsMostlyStuckIsNotTriedForEver) {
+    Immovable m;
+    m.mending.is_mostly_stuck = [](TetId) { return true; };
+    const std::size_t tried = m.pass(1'000'000);
+    EXPECT_LT(tried, m.bad / 4);
+    EXPECT_GT(tried, m.bad / 20) << "also at the end, where it may be better";
+    EXPECT_GE(m.mending.left().size(), m.most()) << "nothing is lost by not being tried";
+}
+
+TEST(Mending, SuccessKeepsPatience) {
+    Immovable m;
+    m.mending.is_mostly_stuck = [](TetId) { return true; };
+    EXPECT_GE(m.pass(15), m.most());
+}
+
+TEST(Mending, OthersAreTriedWhateverIsStuck) {
+    Immovable m;
+    std::size_t stuck = 0;
+    const auto is_stuck = [](TetId t) { return t.value() % 4 != 0; };
+    m.staged.for_domain([&](TetId t) { stuck += is_stuck(t) ? 1U : 0U; });
+    m.mending.is_mostly_stuck = is_stuck;
+    const std::size_t tried = m.pass(1'000'000);
+    EXPECT_GE(tried, m.most() - stuck);
+    EXPECT_LT(tried, m.bad - stuck + stuck / 4);
+}
+
+TEST(Mending, WhatWasTouchedIsListedOnce) {
+    Immovable m;
+    m.mending.left().clear();
+    std::vector<TetId> some;
+    m.staged.for_domain([&](TetId t) {
+        if (t.value() % 3 == 0) some.push_back(t);
+    });
+    m.mending.touch(some);
+    m.mending.touch(some);
+    m.mending.collect_touched();
+    std::set<TetStore::Corners> listed;
+    for (const Bad& b : m.mending.left()) listed.insert(b.corners);
+    EXPECT_EQ(listed.size(), some.size());
+    EXPECT_EQ(m.mending.left().size(), some.size());
+    EXPECT_TRUE(m.mending.waiting().empty());
+    // What is good by now goes.
+    m.judge.set_goal(2, TetJudge::kNoAspect);
+    m.mending.collect_touched();
+    EXPECT_TRUE(m.mending.left().empty());
+}
+
+}  // namespace
+}  // namespace wellmesh::testing
