@@ -58,10 +58,10 @@ public:
     [[nodiscard]] TetFace across(TetFace tf) const { return tet_[tf.tet().index()].opposite[tf.face()]; }
     [[nodiscard]] TetFace across(TetId t, unsigned f) const { return tet_[t.index()].opposite[f]; }
     [[nodiscard]] const std::array<TetFace, 4>& across_all(TetId t) const { return tet_[t.index()].opposite; }
-    /// Slot of v in t; 4 if v is no corner of t. Without branches: they can't be foreseen.
+    /// Slot of v in t; 4 if v is no corner of t.
     [[nodiscard]] unsigned find_corner(TetId t, VertexId v) const {
         const Corners& c = tet_[t.index()].corner;
-        return 4U - 4U * (c[0] == v ? 1U : 0U) - 3U * (c[1] == v ? 1U : 0U) - 2U * (c[2] == v ? 1U : 0U) - (c[3] == v ? 1U : 0U);
+        return c[0] == v ? 0U : c[1] == v ? 1U : c[2] == v ? 2U : c[3] == v ? 3U : 4U;
     }
     [[nodiscard]] std::array<VertexId, 3> face_corners(TetFace tf) const {
         const Corners& c = tet_[tf.tet().index()].corner;
