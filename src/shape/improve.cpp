@@ -202,7 +202,7 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
         mesh_.triangulation().find_star(VertexId{v}, star_);
         mending_.touch(star_);
     }
-    mending_.collect_touched();
+    mending_.collect(workers_);
     return RunGuard::Verdict::go_on;
 }
 
@@ -244,7 +244,6 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
         verdict = split_or_go_back(rung_cosine, *last);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
-    mending_.collect(workers_);  // what a split's own mending of facets made is not all known
     reached = !below();
     if (reached) return verdict;
     // Beside what an acute angle forces some tetrahedra stay for ever, which says nothing about the others.

@@ -2,6 +2,7 @@
 #include "shape/mending.hpp"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "shape/corners.hpp"
 
@@ -98,14 +99,6 @@ void Mending::collect(Workers& workers) {
             if (is_bad(t, how)) left_.push_back(listed(t, how));
 }
 
-void Mending::collect_touched() {
-    left_.insert(left_.end(), heap_.begin(), heap_.end());
-    heap_.clear();
-    drop_good();
-    std::sort(left_.begin(), left_.end());
-    left_.erase(std::unique(left_.begin(), left_.end(), [](const Bad& a, const Bad& b) { return a.corners == b.corners; }), left_.end());
-}
-
 void Mending::touch(const std::vector<TetId>& tets) {
     fit_arrays();
     ++clock_;
@@ -164,12 +157,11 @@ bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
     return true;
 }
 
-void Mending::end_pass() { drop_good(); }
-
-void Mending::drop_good() {
+void Mending::end_pass() {
+    std::unordered_set<std::uint64_t> listed;  // by corners
     std::erase_if(left_, [&](Bad& b) {
         const TetId t = find_tet(mesh_, b.corners, b.last);
-        if (!t.valid()) return true;
+        if (!t.valid() || !listed.insert(key_of(b.corners)).second) return true;
         b.badness = badness(t);
         return b.badness <= judge_.goal();
     });

@@ -49,13 +49,11 @@ public:
     void forget_tries();
     /// All that is bad now, in left().
     void collect(Workers& workers);
-    /// The same, where all that has changed was told by touch(): left() is what it was and what has become bad since, as far as that is bad now.
-    void collect_touched();
     /// Begins a pass: what is left waits again.
     void begin_pass();
     /// Goes on until nothing waits. @return false: it was not to go on
     bool pass(unsigned samples, const MayGoOn& may_go_on);
-    /// Neighbours may have mended what is left since; a tetrahedron may be listed twice.
+    /// Neighbours may have mended what is left since, and a tetrahedron may be listed twice: left() is what is bad now, once each.
     void end_pass();
     /// Moves vertices to their optimal-Delaunay points, where nothing gets worse than `floor`. @param waiting  gets those that leave the zone
     bool smooth(const std::vector<VertexId>& vertices, double floor, std::vector<VertexId>& waiting, const MayGoOn& may_go_on);
@@ -107,7 +105,6 @@ private:
     [[nodiscard]] Stuck* find_stuck(std::uint64_t key);
     [[nodiscard]] bool is_bad(TetId t, double& how) const;
     [[nodiscard]] Bad listed(TetId t, double badness) const;
-    void drop_good();
     void fit_arrays();
 
     ConformingMesh& mesh_;
