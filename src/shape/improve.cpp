@@ -20,6 +20,7 @@ constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing ou
 constexpr double kVertexBudget = 1.5;     // splits may not add more than half the vertices again,
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
 constexpr std::uint64_t kCascadeCeiling = 2, kCascadeAllowance = 10000;  // beyond the budget; more is a cascade beside an acute angle
+constexpr std::size_t kManyTets = 200000;
 constexpr unsigned kMostCascades = 16;    // that are undone, one tetrahedron each given up, before a round of splits is
 constexpr unsigned kLastTries = 5;
 constexpr double kRungDeg = 5;
@@ -202,7 +203,9 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
         mesh_.triangulation().find_star(VertexId{v}, star_);
         mending_.touch(star_);
     }
-    mending_.collect(workers_);
+    // A round splits few: on a large mesh looking at all of it would take longer than everything else. An excuse may end nearby without a touch: the rung's end sees that.
+    if (mesh_.tets().live() > kManyTets) mending_.collect_touched();
+    else mending_.collect(workers_);
     return RunGuard::Verdict::go_on;
 }
 
@@ -244,6 +247,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
         verdict = split_or_go_back(rung_cosine, *last);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
+    if (mesh_.tets().live() > kManyTets) mending_.collect(workers_);
     reached = !below();
     if (reached) return verdict;
     // Beside what an acute angle forces some tetrahedra stay for ever, which says nothing about the others.

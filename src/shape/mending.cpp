@@ -99,6 +99,12 @@ void Mending::collect(Workers& workers) {
             if (is_bad(t, how)) left_.push_back(listed(t, how));
 }
 
+void Mending::collect_touched() {
+    left_.insert(left_.end(), heap_.begin(), heap_.end());
+    heap_.clear();
+    end_pass();
+}
+
 void Mending::touch(const std::vector<TetId>& tets) {
     fit_arrays();
     ++clock_;

@@ -49,6 +49,8 @@ public:
     void forget_tries();
     /// All that is bad now, in left().
     void collect(Workers& workers);
+    /// The same, where only what touch() was told of has changed: left() is what it was and what has become bad since, as far as that is bad now.
+    void collect_touched();
     /// Begins a pass: what is left waits again.
     void begin_pass();
     /// Goes on until nothing waits. @return false: it was not to go on

@@ -111,5 +111,22 @@ TEST(Mending, WhatIsTouchedAgainAndAgainIsListedOnce) {
     EXPECT_TRUE(m.mending.left().empty());
 }
 
+TEST(Mending, WhatWasTouchedIsCollectedOnce) {
+    Immovable m;
+    m.mending.left().clear();
+    std::vector<TetId> some;
+    m.staged.for_domain([&](TetId t) {
+        if (t.value() % 3 == 0) some.push_back(t);
+    });
+    m.mending.touch(some);
+    m.mending.touch(some);
+    m.mending.collect_touched();
+    std::set<TetStore::Corners> listed;
+    for (const Bad& b : m.mending.left()) listed.insert(b.corners);
+    EXPECT_EQ(listed.size(), some.size());
+    EXPECT_EQ(m.mending.left().size(), some.size());
+    EXPECT_TRUE(m.mending.waiting().empty());
+}
+
 }  // namespace
 }  // namespace wellmesh::testing
