@@ -11,7 +11,7 @@
 namespace wellmesh {
 namespace {
 constexpr unsigned kMoveSamples = 30, kPatientMoveSamples = 60;
-constexpr unsigned kPatientPasses = 2;    // patience with moves saves vertices: smoothing and splitting come after, as they take longer for each that they mend
+constexpr unsigned kPatientPasses = 2;    // smoothing and splitting come after: they take longer for each that they mend
 constexpr unsigned kSmoothingRounds = 2;
 constexpr double kFewLeft = 0.05;         // part of the bad tetrahedra: if no more are left, smoothing goes for those, too, that acute angles force
 constexpr double kWorthRepeating = 0.85;  // part of the bad tetrahedra that may be left for another pass or smoothing to be tried
@@ -203,7 +203,8 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
         mesh_.triangulation().find_star(VertexId{v}, star_);
         mending_.touch(star_);
     }
-    // A round splits few: on a large mesh looking at all of it would take longer than everything else. An excuse may end nearby without a touch: the rung's end sees that.
+    // A round splits few: on a large mesh looking at all of it would take longer than everything else. An excuse may end nearby without
+    // a touch: the rung's end sees that.
     if (mesh_.tets().live() > kManyTets) mending_.collect_touched();
     else mending_.collect(workers_);
     return RunGuard::Verdict::go_on;
