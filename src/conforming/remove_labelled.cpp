@@ -58,7 +58,6 @@ private:
     using Edge = ConformingMesh::HoleLabels::Edge;
     using Corners = std::array<std::uint32_t, 4>;
 
-    static unsigned corner_of(const Corners& c, std::uint32_t v) { return c[0] == v ? 0U : c[1] == v ? 1U : c[2] == v ? 2U : c[3] == v ? 3U : 4U; }
     static std::uint64_t key_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
     static bool is_inside(std::uint32_t opposite) { return (opposite & Hole::kBoundaryBit) == 0; }
 
@@ -255,7 +254,9 @@ private:
         if (l_.ends.size() != 2) return false;
         const std::uint32_t a = l_.ends[0], b = l_.ends[1];
         note_segment(a, b, SegmentId{mesh_.info(hole_.vertex).carrier_id});
-        return std::any_of(hole_.filling.begin(), hole_.filling.end(), [&](const Corners& c) { return corner_of(c, a) < 4 && corner_of(c, b) < 4; });
+        return std::any_of(hole_.filling.begin(), hole_.filling.end(), [&](const Corners& c) {
+            return std::find(c.begin(), c.end(), a) != c.end() && std::find(c.begin(), c.end(), b) != c.end();
+        });
     }
 
     ConformingMesh& mesh_;

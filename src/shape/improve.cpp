@@ -20,7 +20,7 @@ constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing ou
 constexpr double kVertexBudget = 1.5;     // splits may not add more than half the vertices again,
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
 constexpr std::uint64_t kCascadeCeiling = 2, kCascadeAllowance = 10000;  // beyond the budget; more is a cascade beside an acute angle
-constexpr std::size_t kManyTets = 200000;
+constexpr std::size_t kManyTets = 200000; // of a mesh that is looked at as a whole once a rung, not after each round of splits
 constexpr unsigned kMostCascades = 16;    // that are undone, one tetrahedron each given up, before a round of splits is
 constexpr unsigned kLastTries = 5;
 constexpr double kRungDeg = 5;
@@ -162,10 +162,15 @@ RunGuard::Verdict ShapeImprover::smooth_around_bad(unsigned rings) {
     return verdict;
 }
 
-/// All that moves, single removals and insertions can do; then the same around what is left, smoothed.
+/// Moves, then more of them, and single removals and insertions where they fail.
+RunGuard::Verdict ShapeImprover::try_each(LastResort last_resort) {
+    const RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
+    return verdict == RunGuard::Verdict::go_on ? passes(kPatientMoveSamples, kPatientPasses, last_resort) : verdict;
+}
+
+/// The same, and again around what is left, smoothed.
 RunGuard::Verdict ShapeImprover::settle(LastResort last_resort) {
-    RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
-    if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples, kPatientPasses, last_resort);
+    RunGuard::Verdict verdict = try_each(last_resort);
     for (unsigned r = 0; r < kSmoothingRounds && !left().empty() && verdict == RunGuard::Verdict::go_on; ++r) {
         const std::size_t before = left().size();
         verdict = smooth_around_bad(1);
@@ -173,12 +178,6 @@ RunGuard::Verdict ShapeImprover::settle(LastResort last_resort) {
         if (!worth_it(before, left().size())) break;
     }
     return verdict;
-}
-
-/// What an acute angle forces, too, has its chance, before the neighbourhoods of the others are smoothed: mostly little of it is to be mended.
-RunGuard::Verdict ShapeImprover::try_forced_too() {
-    const RunGuard::Verdict verdict = passes(kMoveSamples, 1, LastResort::none);
-    return verdict == RunGuard::Verdict::go_on ? passes(kPatientMoveSamples, kPatientPasses, LastResort::remove_or_insert) : verdict;
 }
 
 /// Splits what is worse than this: of neighbours only the worst, as moves may mend the others then.
@@ -316,7 +315,7 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     if (refiner_.may_excuse()) {
         const std::size_t at_first = left().size();
-        verdict = try_forced_too();
+        verdict = try_each(LastResort::remove_or_insert);  // what an acute angle forces, too: mostly little of it is to be mended
         if (static_cast<double>(left().size()) > kFewLeft * static_cast<double>(at_first)) leave_forced_alone();
     }
     if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::remove_or_insert);

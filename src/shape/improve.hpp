@@ -72,8 +72,8 @@ private:
     enum class LastResort : std::uint8_t { none, insert, remove_or_insert };
 
     RunGuard::Verdict aim_at(double angle_deg, std::size_t vertices_at_start);
+    RunGuard::Verdict try_each(LastResort last_resort);
     RunGuard::Verdict settle(LastResort last_resort);
-    RunGuard::Verdict try_forced_too();
     RunGuard::Verdict pass(unsigned samples, LastResort last_resort);
     RunGuard::Verdict passes(unsigned samples, unsigned most, LastResort last_resort);
     bool try_last_resort(const Bad& bad, const Corners& freest_first, bool removes);
