@@ -28,9 +28,8 @@ public:
     SharedArray& operator=(const SharedArray& other) {
         if (this == &other) return *this;
         clear();
-        reserve(other.size_);
+        resize_as_is(other.size_);
         std::copy_n(other.data_, other.size_, data_);
-        size_ = other.size_;
         return *this;
     }
     SharedArray& operator=(SharedArray&& other) noexcept {
@@ -40,6 +39,7 @@ public:
     void swap(SharedArray& other) noexcept {
         std::swap(data_, other.data_);
         std::swap(size_, other.size_);
+        std::swap(ready_, other.ready_);
         std::swap(capacity_, other.capacity_);
         std::swap(owns_, other.owns_);
     }
@@ -48,7 +48,7 @@ public:
     [[nodiscard]] SharedArray view() {
         SharedArray out;
         out.data_ = data_;
-        out.size_ = out.capacity_ = size_;
+        out.size_ = out.ready_ = out.capacity_ = size_;
         out.owns_ = false;
         return out;
     }
@@ -67,9 +67,10 @@ public:
     [[nodiscard]] const T* end() const { return data_ + size_; }
 
     void push_back(const T& value) {
-        if (size_ == capacity_) {
+        if (size_ == ready_) {
             const T kept = value;  // it may be one of ours
-            reserve(std::max<std::size_t>(16, size_ + size_ / 2));
+            if (size_ == capacity_) reserve(std::max<std::size_t>(16, size_ + size_ / 2));
+            ready(size_ + 1);
             data_[size_++] = kept;
             return;
         }
@@ -83,7 +84,12 @@ public:
     /// New elements hold anything.
     void resize_as_is(std::size_t n) {
         if (n > capacity_) reserve(std::max(n, size_ + size_ / 2));
+        if (n > ready_) ready(n);
         size_ = n;
+    }
+    /// For a worker, before it writes to `count` new elements that nobody has touched: see touch_pages().
+    void touch(std::size_t first, std::size_t count) {
+        if (is_paged(capacity_)) touch_pages(data_, capacity_ * sizeof(T), first * sizeof(T), (first + count) * sizeof(T));
     }
     void assign(std::size_t n, const T& value) {
         size_ = 0;
@@ -94,7 +100,7 @@ public:
     void release() {
         give_back();
         data_ = nullptr;
-        size_ = capacity_ = 0;
+        size_ = ready_ = capacity_ = 0;
         owns_ = true;
     }
     void reserve(std::size_t n) {
@@ -107,6 +113,7 @@ public:
             if (size_ != 0) std::copy_n(data_, size_, grown);
             give_back();
             data_ = grown;
+            ready_ = size_;
         }
         capacity_ = n;
     }
@@ -114,13 +121,17 @@ public:
 private:
     static constexpr std::align_val_t kAlignment{std::max<std::size_t>(alignof(T), 64)};
     static constexpr bool is_paged(std::size_t n) { return kPagesMove && n * sizeof(T) >= kLeastPaged; }
+    /// The first n may be touched: size() grows up to ready_ without a further look.
+    void ready(std::size_t n) {
+        ready_ = is_paged(capacity_) ? std::min(capacity_, ready_pages(data_, capacity_ * sizeof(T), ready_ * sizeof(T), n * sizeof(T)) / sizeof(T)) : capacity_;
+    }
     void give_back() {
         if (!owns_ || data_ == nullptr) return;
         if (is_paged(capacity_)) give_back_pages(data_, capacity_ * sizeof(T));
         else ::operator delete(data_, kAlignment);
     }
     T* data_ = nullptr;
-    std::size_t size_ = 0, capacity_ = 0;
+    std::size_t size_ = 0, ready_ = 0, capacity_ = 0;
     bool owns_ = true;
 };
 

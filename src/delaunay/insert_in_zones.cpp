@@ -200,6 +200,7 @@ std::vector<std::uint32_t> Triangulation::insert_in_zones(Workers& workers, std:
     }
 
     workers.for_each(zones, [&](std::size_t z) {
+        tets_.touch(team[z].slots);
         std::vector<TetId> slots = std::move(team[z].slots).list();
         for (const TetId t : slots) {
             zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);

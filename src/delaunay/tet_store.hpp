@@ -108,6 +108,8 @@ public:
     [[nodiscard]] TetStore view(std::vector<TetId> slots);
     /// Slots that are on no free list any more, new ones at the end if there are not as many free: these hold anything. @throws as allocate()
     [[nodiscard]] Slots take_slots(std::size_t count);
+    /// By the worker that is to hold them, before it empties them.
+    void touch(const Slots& slots) { tet_.touch(slots.first, slots.count); }
     void empty(TetId t) { tet_[t.index()].corner[0] = VertexId{}; }
     /// How many tetrahedra a view can still hold.
     [[nodiscard]] std::size_t room() const { return free_.size(); }

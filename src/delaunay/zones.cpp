@@ -38,6 +38,7 @@ void Triangulation::split(Workers& workers, const Zones& zones, std::size_t spar
     for (TetStore::Slots& share : taken) share = tets_.take_slots(spare);
     std::vector<std::vector<TetId>> free(zones.count());
     workers.for_each(zones.count(), [&](std::size_t z) {
+        tets_.touch(taken[z]);
         free[z] = std::move(taken[z]).list();
         for (const TetId t : free[z]) {
             out.zone_of_tet[t.index()] = static_cast<std::uint8_t>(z);

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "core/huge_pages.hpp"
+#include "core/page_memory.hpp"
 
 namespace wellmesh::io {
 namespace {

@@ -37,7 +37,7 @@ DelaunayResult triangulate_points(std::span<const Vec3> points, unsigned threads
     visit_in_canonical_order<false>(
         mesh.tets(), mesh.vertex_count(), workers,
         [&](std::size_t n) {
-            reserve_on_huge_pages(result.mesh.tets, n);
+            reserve_on_huge_pages(result.mesh.tets, n, workers);
             result.mesh.tets.resize(n);
         },
         [&](std::size_t place, TetId, const TetStore::Corners& c) {
@@ -45,9 +45,9 @@ DelaunayResult triangulate_points(std::span<const Vec3> points, unsigned threads
         },
         mesh.take_scratch());
     mesh = Triangulation();  // before there is more to hold
-    reserve_on_huge_pages(result.mesh.tet_regions, result.mesh.tets.size());
+    reserve_on_huge_pages(result.mesh.tet_regions, result.mesh.tets.size(), workers);
     result.mesh.tet_regions.assign(result.mesh.tets.size(), 1);
-    reserve_on_huge_pages(result.mesh.vertices, points.size());
+    reserve_on_huge_pages(result.mesh.vertices, points.size(), workers);
     result.mesh.vertices.assign(points.begin(), points.end());
     return result;
 }

@@ -38,6 +38,38 @@ TEST(SharedArray, KeepsWhatItHoldsThroughEverySize) {
     EXPECT_EQ(owned.size(), array.size());
 }
 
+TEST(SharedArray, TouchingAShareLeavesTheOtherSharesAlone) {
+    SharedArray<Item> array;
+    array.resize(1000, {1, 2, 3, 4});
+    constexpr std::size_t kShare = 333'333;  // ends in the midst of a page
+    for (std::uint64_t share = 0; share < 6; ++share) {
+        const std::size_t first = array.size();
+        array.resize_as_is(first + 2 * kShare);
+        // The second half before the first: what lies on both sides of a share is in use.
+        for (const std::size_t begin : {first + kShare, first}) {
+            array.touch(begin, kShare);
+            for (std::size_t i = begin; i < begin + kShare; ++i) array[i] = {i, ~i, share, begin};
+        }
+    }
+    for (std::size_t i = 0; i < 1000; ++i) ASSERT_EQ(array[i].b, 2U) << i;
+    for (std::uint64_t i = 1000; i < array.size(); ++i) {
+        const std::uint64_t half = (i - 1000) / kShare;
+        ASSERT_TRUE(array[i].a == i && array[i].b == ~i && array[i].c == half / 2 && array[i].d == 1000 + half * kShare) << i;
+    }
+}
+
+TEST(SharedArray, ShrinksAndGrowsWithinWhatIsReserved) {
+    SharedArray<Item> array;
+    array.reserve(8'000'000);
+    for (std::uint64_t i = 0; i < 2'000'000; ++i) array.push_back({i, ~i, 0, 0});
+    array.resize(2'500'000, {7, 7, 7, 7});
+    array.resize_as_is(100);
+    array.resize(3'000'000, {8, 8, 8, 8});
+    EXPECT_EQ(array.capacity(), 8'000'000U);
+    for (std::uint64_t i = 0; i < 100; ++i) ASSERT_TRUE(array[i].a == i && array[i].b == ~i) << i;
+    for (std::uint64_t i = 100; i < array.size(); ++i) ASSERT_EQ(array[i].d, 8U) << i;
+}
+
 #ifdef __linux__
 
 /// Since the last call the process has held at most so many bytes; 0 if the system doesn't say.
