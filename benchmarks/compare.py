@@ -21,6 +21,7 @@ import os
 import platform
 import random
 import statistics
+import subprocess
 import sys
 import tempfile
 
@@ -85,9 +86,15 @@ class Comparison:
                 if c.missing or (repeat > 0 and c.rows[-1]["wall_seconds"] > self.arguments.patience):
                     continue
                 try:
+                    self.warm_memory()
                     c.rows.append(attempt(c))
                 except Missing as reason:
                     c.missing = str(reason)
+
+    def warm_memory(self):
+        """A process touches so much memory and gives it back: else it depends on who ran before whether the host has to bring it first."""
+        if self.arguments.warm:
+            subprocess.run([sys.executable, "-c", f"bytearray({self.arguments.warm} << 20)"], check=True)
 
     # --- Delaunay
 
@@ -115,9 +122,15 @@ class Comparison:
             ("HXT", lambda _: driver_row([os.path.join(a.rivals, "hxt_delaunay"), points, threads], limit)),
             ("Gmsh tetrahedralize()", lambda _: driver_row([a.python, os.path.join(DRIVERS, "gmsh_wheel.py"), "delaunay", points, threads], limit)),
             ("CGAL Delaunay", lambda _: driver_row([os.path.join(a.rivals, "cgal_delaunay"), points], limit)))]
+        self.leave_out(contestants)
         self.rounds(contestants, lambda c: c.once(None))
         os.remove(points)
         return contestants
+
+    def leave_out(self, contestants):
+        for c in contestants:
+            if any(c.name.startswith(skipped) for skipped in self.arguments.skip or []):
+                c.missing = "left out by --skip"
 
     @staticmethod
     def found(program):
@@ -170,9 +183,7 @@ class Comparison:
 
     def mesh(self, model, target):
         contestants = self.contestants(model, target, volume_of(model))
-        for c in contestants:
-            if any(c.name.startswith(skipped) for skipped in self.arguments.skip or []):
-                c.missing = "left out by --skip"
+        self.leave_out(contestants)
 
         def attempt(c):
             if os.path.exists(self.out):
@@ -296,6 +307,7 @@ def parsed():
     parser.add_argument("--min-dihedral", type=float, action="append", help="wellmesh's goals (default 20 and 30)")
     parser.add_argument("--skip", action="append", help="leave out rivals whose name begins so")
     parser.add_argument("--threads", type=int, default=1, help="of wellmesh, HXT and Gmsh; the others have one")
+    parser.add_argument("--warm", type=int, default=0, metavar="MIB", help="before each run so much memory is touched and given back, for virtual machines whose host takes back what is free")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--patience", type=float, default=60, help="seconds of a run above which it isn't repeated")
     parser.add_argument("--limit", type=float, default=1200, help="seconds after which a run is ended")
