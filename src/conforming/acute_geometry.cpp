@@ -23,7 +23,7 @@ constexpr double kStretch = 0.2;
 
 }  // namespace
 
-AcuteGeometry::AcuteGeometry(const ValidPlc& plc, bool has_narrow_gaps) : plc_(&plc), any_(!plc.acute_features.empty()), copies_(any_ || has_narrow_gaps) {
+AcuteGeometry::AcuteGeometry(const ValidPlc& plc, Workers& workers, bool has_narrow_gaps) : plc_(&plc), any_(!plc.acute_features.empty()), copies_(any_ || has_narrow_gaps) {
     if (!copies_) return;
     acute_deg_.assign(plc.vertices.size(), 180);
     const auto note = [&](std::uint32_t v, double angle) { acute_deg_[v] = std::min(acute_deg_[v], angle); };
@@ -32,8 +32,7 @@ AcuteGeometry::AcuteGeometry(const ValidPlc& plc, bool has_narrow_gaps) : plc_(&
         else
             for (const VertexId v : plc.segments[f.id].ends) note(v.value(), f.angle_deg);
     }
-    ball_.assign(plc.vertices.size(), -1);
-    feature_size_.emplace(plc);
+    find_balls(workers);
     list_incidences();
     list_shared_segments();
 }
@@ -97,24 +96,21 @@ bool AcuteGeometry::is_on_facet(VertexId input_vertex, FacetId f) const {
     return std::binary_search(on.begin(), on.end(), input_vertex);
 }
 
-double AcuteGeometry::ball_radius(VertexId v) {
-    if (!any_ || v.index() >= acute_deg_.size() || acute_deg_[v.index()] == 180) return 0;
-    double& r = ball_[v.index()];
-    if (r < 0) {
-        WELLMESH_CHECK(Stage::refine, feature_size_.has_value());
-        r = (*feature_size_)(point(v)) / 3;
-        if (!std::isfinite(r)) r = 0;
-    }
-    return r;
+void AcuteGeometry::find_balls(Workers& workers) {
+    ball_.assign(plc_->vertices.size(), 0);
+    if (!any_) return;
+    feature_size_ = std::make_unique<const LocalFeatureSize>(*plc_);
+    constexpr std::size_t kGrain = 64;
+    workers.for_ranges(ball_.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            if (acute_deg_[v] == 180) continue;
+            const double r = (*feature_size_)(plc_->vertices[v]) / 3;
+            if (std::isfinite(r)) ball_[v] = r;
+        }
+    });
 }
 
-void AcuteGeometry::find_balls() {
-    for (std::size_t v = 0; v < acute_deg_.size(); ++v) (void)ball_radius(VertexId{v});
-    feature_size_.reset();  // some hundred bytes a facet, which nobody asks any more
-}
-
-std::vector<Box> AcuteGeometry::boxes_of_balls() {
-    find_balls();
+std::vector<Box> AcuteGeometry::boxes_of_balls() const {
     std::vector<Box> out;
     for (std::size_t v = 0; v < acute_deg_.size(); ++v) {
         const double r = ball_radius(VertexId{v});
@@ -125,7 +121,7 @@ std::vector<Box> AcuteGeometry::boxes_of_balls() {
     return out;
 }
 
-bool AcuteGeometry::in_ball_of_segment(SegmentId s, const Vec3& p) {
+bool AcuteGeometry::in_ball_of_segment(SegmentId s, const Vec3& p) const {
     if (!any_) return false;
     const auto& ends = plc_->segments[s.index()].ends;
     return std::any_of(ends.begin(), ends.end(), [&](VertexId v) {

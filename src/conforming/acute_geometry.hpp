@@ -8,12 +8,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
 #include "core/compressed_rows.hpp"
+#include "core/workers.hpp"
 #include "validation/local_feature_size.hpp"
 
 namespace wellmesh {
@@ -29,7 +32,7 @@ struct CarriedWitness {
 class AcuteGeometry {
 public:
     /// @param has_narrow_gaps  features that do not meet have to copy each other, too
-    explicit AcuteGeometry(const ValidPlc& plc, bool has_narrow_gaps = false);
+    AcuteGeometry(const ValidPlc& plc, Workers& workers, bool has_narrow_gaps = false);
 
     /// Is there any acute angle at all? If not, nothing below is ever needed.
     [[nodiscard]] bool any() const { return any_; }
@@ -37,22 +40,22 @@ public:
     [[nodiscard]] bool copies() const { return copies_; }
 
     /// Radius of the ball about an input vertex that stays empty: a third of the local feature size if the vertex is acute or ends an acute
-    /// segment, else 0. Found when first asked for.
-    [[nodiscard]] double ball_radius(VertexId v);
+    /// segment, else 0.
+    [[nodiscard]] double ball_radius(VertexId v) const { return v.index() < ball_.size() ? ball_[v.index()] : 0; }
 
     /// Boxes about all balls, empty ones left out.
-    [[nodiscard]] std::vector<Box> boxes_of_balls();
-    /// Finds all radii, so that several threads may ask for them, and forgets what they follow from.
-    void find_balls();
+    [[nodiscard]] std::vector<Box> boxes_of_balls() const;
+    /// What the radii follow from, for whoever asks first. Some hundred bytes a facet. Null for input without acute angles.
+    [[nodiscard]] std::unique_ptr<const LocalFeatureSize> take_feature_size() { return std::move(feature_size_); }
 
     /// Half of it, where a size is asked for that is finer than the ball.
     void halve_ball(VertexId v) { ball_[v.index()] /= 2; }
-    /// All radii, for an undo. @pre find_balls() was called
+    /// All radii, for an undo.
     [[nodiscard]] const std::vector<double>& balls() const { return ball_; }
     void set_balls(const std::vector<double>& radii) { ball_ = radii; }
 
     /// Is a point of the segment in the ball of one of its ends?
-    [[nodiscard]] bool in_ball_of_segment(SegmentId s, const Vec3& p);
+    [[nodiscard]] bool in_ball_of_segment(SegmentId s, const Vec3& p) const;
 
     /// How far from the end `v` of segment s the witness's copy on it lies: as far as the witness itself, which must be on another segment at v,
     /// or on a facet at v that does not contain s. Empty if it has none.
@@ -87,6 +90,7 @@ private:
         std::uint32_t low = 0, high = 0;
         auto operator<=>(const FacetPair&) const = default;
     };
+    void find_balls(Workers& workers);
     void list_incidences();
     void list_shared_segments();
     [[nodiscard]] std::optional<Vec3> rotated_about(SegmentId s, FacetId f, const Vec3& q, const Vec3& centre) const;
@@ -97,8 +101,8 @@ private:
     const ValidPlc* plc_;
     bool any_ = false, copies_ = false;
     std::vector<double> acute_deg_;  // smallest acute angle at each input vertex; 180: none
-    std::vector<double> ball_;  // radii; below 0: not found yet
-    std::optional<LocalFeatureSize> feature_size_;
+    std::vector<double> ball_;       // radii; none: there are no acute angles
+    std::unique_ptr<const LocalFeatureSize> feature_size_;
     CompressedRows<FacetId> facets_at_;  // each input vertex
     CompressedRows<SegmentId> segments_at_;
     std::vector<FacetId> ids_;  // ids_[i] = FacetId{i}: spans over single facets

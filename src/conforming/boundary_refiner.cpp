@@ -362,8 +362,7 @@ bool BoundaryRefiner::step() {
     if (!segments_.empty()) {
         const WaitingSegment w = segments_.front();
         segments_.pop_front();
-        const TetId t = mesh_.triangulation().find_edge(w.s.a, w.s.b);
-        if (!w.encroacher.valid() && t.valid()) {
+        if (!w.encroacher.valid() && mesh_.triangulation().find_edge(w.s.a, w.s.b).valid()) {
             // A piece that was missing has appeared: label it, and see whether it is encroached.
             mesh_.label_edge(w.s.a, w.s.b, w.s.segment);
             std::vector<TetId> star;

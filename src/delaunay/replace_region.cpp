@@ -62,10 +62,11 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region, con
     region.group.clear();
     region.outside.assign(rim.size(), TetFace{});
     std::vector<char> is_within(tets_.slots(), 0);  // marks of searches won't do: find_face() leaves its own
-    std::vector<TetId> stack;
-    const auto enter = [&](TetId t) {
+    const auto enter = [&](TetId t, std::uint32_t group) {
         is_within[t.index()] = 1;
-        stack.push_back(t);
+        region.tets.push_back(t);
+        region.group.push_back(group);
+        tets_.prefetch(t);  // it's looked at when those before it have been
     };
     for (std::size_t r = 0; r < rim.size(); ++r) {
         if (region.outside[r].valid()) continue;
@@ -76,15 +77,13 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region, con
         if (!start.valid()) return false;
         if (!same_side(tets_.face_corners(start), rim[r].corners)) start = tets_.across(start);
         if (is_within[start.tet().index()] != 0) return false;  // it would have been met
-        for (enter(start.tet()); !stack.empty();) {
-            const TetId t = stack.back();
-            stack.pop_back();
+        std::size_t next = region.tets.size();
+        for (enter(start.tet(), rim[r].group); next < region.tets.size();) {
+            const TetId t = region.tets[next++];
             if (tets_.is_ghost(t)) return false;
             for (const VertexId v : tets_.corners(t))
                 if (!table.is_known(v)) return false;
-            region.tets.push_back(t);
-            if (region.tets.size() % kBetweenQuestions == 0 && !goes_on()) return false;
-            region.group.push_back(rim[r].group);
+            if (next % kBetweenQuestions == 0 && !goes_on()) return false;
             for (unsigned f = 0; f < 4; ++f) {
                 const TetFace beyond = tets_.across(t, f);
                 const std::array<VertexId, 3> corners = tets_.face_corners(TetFace{t, f});
@@ -92,7 +91,7 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region, con
                     if (!same_side(corners, rim[met].corners)) return false;
                     region.outside[met] = beyond;
                 } else if (is_within[beyond.tet().index()] == 0) {
-                    enter(beyond.tet());
+                    enter(beyond.tet(), rim[r].group);
                 }
             }
         }

@@ -75,12 +75,13 @@ public:
     }
 
 private:
+    /// What lies between two stages counts for the second.
     template <class F>
     auto timed(Stage stage, F&& work) {
         guard_.enter(stage);
-        const auto start = std::chrono::steady_clock::now();
         auto note = [&] {
-            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+            const auto end = std::chrono::steady_clock::now();
+            const std::chrono::duration<double> spent = end - std::exchange(last_end_, end);
             result_.statistics.stages.push_back({stage, spent.count(), vertices_, tets_});
         };
         if constexpr (std::is_void_v<decltype(work())>) {
@@ -97,8 +98,13 @@ private:
         check_vertex_sizes(plc_);
         const std::uint64_t exact_before = exact_predicate_calls();
         const ValidPlc valid = fill_valid();
-        const CertifyOptions bounds = certificate_bounds(result_, options_, plc_, valid, control_.stop);
-        result_.certificate = timed(Stage::certify, [&] { return certify(result_.mesh, bounds, &plc_); });
+        timed(Stage::certify, [&] { certify_and_report(valid); });
+        result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
+        return std::move(result_);
+    }
+
+    void certify_and_report(const ValidPlc& valid) {
+        result_.certificate = certify(result_.mesh, certificate_bounds(result_, options_, plc_, valid, control_.stop), &plc_);
         // What was joined may have had no room between, such as a body as flat as the rounding: then the result is another domain's.
         if (joined_ && is_refuted(result_.certificate)) throw *refusal_;
         fail_if_refuted(result_.certificate);
@@ -110,8 +116,6 @@ private:
             throw;
         }
         report_goals(result_, options_, valid, size_rows_, workers_);
-        result_.statistics.exact_predicate_calls = exact_predicate_calls() - exact_before;
-        return std::move(result_);
     }
 
     ValidPlc take_in() {
@@ -196,7 +200,7 @@ private:
         const bool acute = !valid.acute_features.empty();
         // Where the input is acute features copy each other anyway.
         const double enough = most_for_gaps(options_.limits, static_cast<double>(mesh.vertex_count()));
-        AcuteGeometry acute_geometry(valid, !acute && options_.mode != Mode::certified && vertices_for_gaps(valid, enough) > enough);
+        AcuteGeometry acute_geometry(valid, workers_, !acute && options_.mode != Mode::certified && vertices_for_gaps(valid, enough) > enough);
         if (acute_geometry.copies()) guard_.set_ceiling(40 * mesh.vertex_count() + 20'000);
         BoundaryRefiner boundary(mesh, guard_, options_.seed, acute_geometry);
         const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);
@@ -289,6 +293,7 @@ private:
     MeshResult result_;
     std::vector<AskedAchieved> size_rows_;
     std::uint64_t vertices_ = 0, tets_ = 0;
+    std::chrono::steady_clock::time_point last_end_ = std::chrono::steady_clock::now();  ///< of a stage
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/huge_pages.hpp"
@@ -27,6 +28,39 @@ std::uint32_t GradedOctree::split(std::uint32_t leaf) {
     }
     nodes_[leaf].first_child = first;
     return first;
+}
+
+GradedOctree GradedOctree::branch(std::uint32_t leaf) const {
+    GradedOctree out(lo_, side_);
+    out.nodes_[0] = nodes_[leaf];
+    return out;
+}
+
+GradedOctree GradedOctree::with(std::span<const Branch> branches) const {
+    GradedOctree out(lo_, side_);
+    std::size_t size = nodes_.size(), next = 0;
+    for (const Branch& b : branches) size += b.tree.size() - 1;
+    out.nodes_.reserve(size);
+    out.take_over(0, *this, 0, branches, next);
+    return out;
+}
+
+void GradedOctree::take_over(std::uint32_t leaf, const GradedOctree& from, std::uint32_t node, std::span<const Branch> branches, std::size_t& next) {
+    if (next < branches.size() && branches[next].leaf == node) {
+        const std::vector<Node>& grown = branches[next++].tree.nodes_;
+        const auto ahead = static_cast<std::uint32_t>(nodes_.size()) - 1;
+        const auto moved = [&](Node n) {
+            if (n.first_child != 0) n.first_child += ahead;
+            return n;
+        };
+        nodes_[leaf] = moved(grown[0]);
+        std::transform(grown.begin() + 1, grown.end(), std::back_inserter(nodes_), moved);
+        return;
+    }
+    nodes_[leaf] = from.nodes_[node];
+    if (from.is_leaf(node)) return;
+    const std::uint32_t first = split(leaf);
+    for (std::uint32_t k = 0; k < 8; ++k) take_over(first + k, from, from.nodes_[node].first_child + k, branches, next);
 }
 
 std::uint32_t GradedOctree::find(unsigned depth, const std::array<std::uint32_t, 3>& at) const {

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "core/workers.hpp"
@@ -50,6 +51,12 @@ public:
     [[nodiscard]] Box box(std::uint32_t node) const;
     /// Splits a leaf. @return its first child; the other seven follow. @pre depth(leaf) < kMaxDepth
     std::uint32_t split(std::uint32_t leaf);
+    /// Part of a tree that is grown on its own, for a leaf of another.
+    struct Branch;
+    [[nodiscard]] GradedOctree branch(std::uint32_t leaf) const;
+    /// The tree with branches in place of these leaves, numbered as if each node's descendants had been split off one child after the other, depth first.
+    /// @pre so are the nodes of this tree and of the branches  @param branches  ascending by leaf
+    [[nodiscard]] GradedOctree with(std::span<const Branch> branches) const;
     /// Only used leaves have lattice points.
     void use(std::uint32_t leaf) { nodes_[leaf].used = true; }
     /// Splits leaves until those that share a corner with a used one differ from it by at most one level.
@@ -83,12 +90,19 @@ private:
         std::uint8_t depth = 0;
         bool used = false;
     };
+    /// Takes over what is below a node of another tree, from `next` on of the branches there.
+    void take_over(std::uint32_t leaf, const GradedOctree& from, std::uint32_t node, std::span<const Branch> branches, std::size_t& next);
     /// The leaf, or the node of that depth, that holds cell `at` of the grid of this depth.
     [[nodiscard]] std::uint32_t find(unsigned depth, const std::array<std::uint32_t, 3>& at) const;
 
     Vec3 lo_;
     double side_;
     std::vector<Node> nodes_;
+};
+
+struct GradedOctree::Branch {
+    std::uint32_t leaf;
+    GradedOctree tree;
 };
 
 }  // namespace wellmesh

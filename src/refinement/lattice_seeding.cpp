@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <deque>
 #include <functional>
 #include <numeric>
+#include <thread>
 #include <unordered_set>
 #include <utility>
 
@@ -224,7 +226,6 @@ bool LatticeSeeder::split_boundary_in_zones(double coarseness) {
     constexpr std::size_t kTetsPerVertex = 8, kMoreVertices = 64;
     // What waits twice lies where nearly all tetrahedra are cut: to try it once more takes longer than to split it.
     constexpr unsigned kTurns = 2;
-    boundary_.prepare_for_zones();
     for (unsigned turn = 0; turn < kTurns && boundary_.may_work_in_zones() && !guard_.limits_vertices(); ++turn) {
         std::vector<TetId> waiting;
         std::vector<Subsegment> segments;
@@ -353,33 +354,74 @@ std::vector<Box> LatticeSeeder::boxes_of(const std::vector<Face>& faces) const {
 }
 
 /// Splits until leaves are no larger than the lattice constants of the cells that they meet.
-void LatticeSeeder::build(GradedOctree& tree, std::uint32_t node, const std::vector<std::uint32_t>& faces, TetId near) {
-    if (stopped_ || !may_go_on(0)) {
-        stopped_ = true;
-        return;
+class LatticeSeeder::OctreeBuilder {
+public:
+    OctreeBuilder(LatticeSeeder& seeder, GradedOctree& tree) : seeder_(seeder), tree_(tree), faces_(seeder.list_faces()), boxes_(seeder.boxes_of(faces_)) {}
+
+    /// The first few levels, then what is below on all workers. @return false: stopped
+    bool run() {
+        std::vector<std::uint32_t> all(faces_.size());
+        std::iota(all.begin(), all.end(), 0U);
+        std::vector<Part> parts;
+        build(tree_, 0, all, TetId{}, &parts);
+        std::vector<GradedOctree::Branch> branches;
+        for (const Part& part : parts) branches.push_back({part.node, tree_.branch(part.node)});
+        seeder_.workers_.for_each(parts.size(), [&](std::size_t i) { build(branches[i].tree, 0, parts[i].faces, parts[i].near, nullptr); });
+        tree_ = tree_.with(branches);
+        return !stopped_;
     }
-    const GradedOctree::Box box = tree.box(node);
-    const Vec3 hi{box.lo.x + box.side, box.lo.y + box.side, box.lo.z + box.side};
-    std::vector<std::uint32_t> here;
-    double spacing = kInfinity;
-    for (const std::uint32_t f : faces) {
-        const auto& [low, high] = face_boxes_[f];
-        if (low.x > hi.x || low.y > hi.y || low.z > hi.z || high.x < box.lo.x || high.y < box.lo.y || high.z < box.lo.z) continue;
-        here.push_back(f);
-        spacing = std::min(spacing, faces_[f].spacing);
+
+private:
+    static constexpr unsigned kPartDepth = 2;
+    struct Part {
+        std::uint32_t node;
+        std::vector<std::uint32_t> faces;
+        TetId near;
+    };
+
+    bool may_go_on() {
+        if (std::this_thread::get_id() == caller_ && !seeder_.may_go_on(0)) stopped_ = true;
+        return !stopped_;
     }
-    const TetId at_centre = mesh_.triangulation().locate(0.5 * (box.lo + hi), near);
-    const double inside =
-        mesh_.tets().is_finite(at_centre) && mesh_.in_domain(at_centre) ? spacing_at(0.5 * (box.lo + hi), mesh_.cell(at_centre)) : kInfinity;
-    spacing = std::min(spacing, inside);
-    if (spacing == kInfinity) return;
-    if (box.side <= spacing * (1 + 1e-9) || tree.depth(node) == GradedOctree::kMaxDepth) {
-        if (!sizes_.varies() || box.side >= kLeastUse * (inside < kInfinity ? inside : spacing)) tree.use(node);
-        return;
+    /// @param faces  that meet the node's parent  @param near  where a search for the node's centre is to begin
+    /// @param parts  gets the nodes of kPartDepth, which are left as they are; null: nothing is left
+    void build(GradedOctree& tree, std::uint32_t node, const std::vector<std::uint32_t>& faces, TetId near, std::vector<Part>* parts) {
+        if (!may_go_on()) return;
+        if (parts != nullptr && tree.depth(node) == kPartDepth) {
+            parts->push_back({node, faces, near});
+            return;
+        }
+        const ConformingMesh& mesh = seeder_.mesh_;
+        const GradedOctree::Box box = tree.box(node);
+        const Vec3 hi{box.lo.x + box.side, box.lo.y + box.side, box.lo.z + box.side};
+        std::vector<std::uint32_t> here;
+        double spacing = kInfinity;
+        for (const std::uint32_t f : faces) {
+            const auto& [low, high] = boxes_[f];
+            if (low.x > hi.x || low.y > hi.y || low.z > hi.z || high.x < box.lo.x || high.y < box.lo.y || high.z < box.lo.z) continue;
+            here.push_back(f);
+            spacing = std::min(spacing, faces_[f].spacing);
+        }
+        const TetId at_centre = mesh.triangulation().locate(0.5 * (box.lo + hi), near);
+        const double inside =
+            mesh.tets().is_finite(at_centre) && mesh.in_domain(at_centre) ? seeder_.spacing_at(0.5 * (box.lo + hi), mesh.cell(at_centre)) : kInfinity;
+        spacing = std::min(spacing, inside);
+        if (spacing == kInfinity) return;
+        if (box.side <= spacing * (1 + 1e-9) || tree.depth(node) == GradedOctree::kMaxDepth) {
+            if (!seeder_.sizes_.varies() || box.side >= kLeastUse * (inside < kInfinity ? inside : spacing)) tree.use(node);
+            return;
+        }
+        const std::uint32_t first = tree.split(node);
+        for (std::uint32_t k = 0; k < 8; ++k) build(tree, first + k, here, at_centre, parts);
     }
-    const std::uint32_t first = tree.split(node);
-    for (std::uint32_t k = 0; k < 8; ++k) build(tree, first + k, here, at_centre);
-}
+
+    LatticeSeeder& seeder_;
+    GradedOctree& tree_;
+    std::vector<Face> faces_;
+    std::vector<Box> boxes_;  // of them
+    const std::thread::id caller_ = std::this_thread::get_id();
+    std::atomic<bool> stopped_{false};
+};
 
 /// The lattice constant that most vertices will have is realised exactly, the others up to a power of two.
 double LatticeSeeder::most_used_spacing() const {
@@ -457,12 +499,7 @@ std::optional<LatticeSeeder::Lattice> LatticeSeeder::find_lattice(double base) {
     while (side < extent) side *= 2;
     std::optional<Lattice> out(Lattice{GradedOctree(0.5 * (lo + hi) - 0.5 * Vec3{side, side, side}, side), {}, {}});
     GradedOctree& tree = *out->tree;
-    faces_ = list_faces();
-    face_boxes_ = boxes_of(faces_);
-    std::vector<std::uint32_t> all(faces_.size());
-    std::iota(all.begin(), all.end(), 0U);
-    build(tree, 0, all, TetId{});
-    if (stopped_) return {};
+    if (!OctreeBuilder(*this, tree).run()) return {};
     tree.balance();
     out->points = tree.lattice(workers_, out->leaves);
     return out;

@@ -101,7 +101,7 @@ private:
     [[nodiscard]] double spacing_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double radius_bound(TetId t, const Vec3& p) const;
     [[nodiscard]] double most_used_spacing() const;
-    void build(GradedOctree& tree, std::uint32_t node, const std::vector<std::uint32_t>& faces, TetId near);
+    class OctreeBuilder;
     [[nodiscard]] std::vector<Face> list_faces() const;
     [[nodiscard]] std::vector<Box> boxes_of(const std::vector<Face>& faces) const;
     [[nodiscard]] bool is_clear(const Vec3& p, double distance) const;
@@ -115,9 +115,6 @@ private:
     std::vector<double> radius_;   // by cell: circumradius bound that is the same all over it; infinite: none
     std::vector<double> spacing_;  // by cell: lattice constant of that
     std::vector<char> is_thin_;    // by cell: nothing is done in it
-    std::vector<Face> faces_;
-    std::vector<Box> face_boxes_;
-    bool stopped_ = false;
     bool tets_are_numbered_ = false;  // by what does not depend on threads
     std::optional<Savepoint> last_;    // of splitting the boundary
     std::uint64_t left_at_last_ = 0;  // vertices

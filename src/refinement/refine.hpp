@@ -69,7 +69,7 @@ public:
     [[nodiscard]] std::optional<ForcedBy> forced_by(TetId t);
     /// Leaves gaps that would take more vertices than these as they are. @pre the mesh conforms, and is not refined yet.
     void leave_gaps(double most_vertices) {
-        gaps_ = ThinGaps(mesh_, most_vertices, [this](TetId t) { return exemptions_.feature_at(t).has_value(); });
+        gaps_ = ThinGaps(mesh_, most_vertices, [this](TetId t) { return exemptions_.feature_at(t).has_value(); }, boundary_.acute().take_feature_size());
     }
     [[nodiscard]] const ThinGaps& gaps() const { return gaps_; }
     [[nodiscard]] bool is_in_gap(TetId t) const { return gaps_.sides_joined_by(mesh_, t).has_value(); }

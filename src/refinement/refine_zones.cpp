@@ -80,7 +80,6 @@ void Refiner::drain_in_zones() {
     // seven tetrahedra, or less; who finds no room waits for the next turn. What is put aside in vain stays in memory.
     // One in four of them may have labels.
     constexpr std::size_t kWaitingPerVertex = 5, kTetsPerVertex = 8, kRecordsPerVertex = 2, kMoreVertices = 64, kMoreRecords = 512;
-    boundary_.prepare_for_zones();
     for (unsigned turn = 0; turn < Zones::kTurns && may_work_in_zones(); ++turn) {
         const auto is_there = [&](const BadTetQueue::Entry& e) { return mesh_.tets().is_finite(e.tet) && BadTetQueue::fingerprint(mesh_.tets().corners(e.tet)) == e.fingerprint; };
         std::vector<Vec3> sample;

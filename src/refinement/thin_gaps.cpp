@@ -42,7 +42,8 @@ double smallest_height(const ConformingMesh& mesh, TetId t) {
 
 }  // namespace
 
-ThinGaps::ThinGaps(const ConformingMesh& mesh, double most_vertices, const std::function<bool(TetId)>& is_forced) {
+ThinGaps::ThinGaps(const ConformingMesh& mesh, double most_vertices, const std::function<bool(TetId)>& is_forced,
+                   std::unique_ptr<const LocalFeatureSize> feature_size) {
     // What each piece of the boundary takes at most, from the tetrahedron beside it: mostly that settles it.
     std::vector<Candidate> candidates;
     for (std::size_t i = 0; i < mesh.tets().slots(); ++i) {
@@ -55,7 +56,7 @@ ThinGaps::ThinGaps(const ConformingMesh& mesh, double most_vertices, const std::
     for (const Candidate& c : candidates) rest += c.most;
     if (rest <= most_vertices) return;
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) { return x.most < y.most; });
-    feature_size_ = std::make_unique<LocalFeatureSize>(mesh.plc());
+    feature_size_ = feature_size ? std::move(feature_size) : std::make_unique<const LocalFeatureSize>(mesh.plc());
     std::size_t first = 0;  // those before it take next to nothing
     constexpr double kNextToNothing = 0.1;
     for (double sum = 0; first < candidates.size() && (sum += candidates[first].most) <= kNextToNothing * most_vertices;) ++first;

@@ -29,7 +29,8 @@ public:
     ThinGaps() = default;
     /// Looks through a conforming mesh. @param most_vertices  that may be spent on gaps: the widest are filled as far as these go.
     /// @param is_forced  is a tetrahedron excused by an acute angle anyway? What narrows there is no gap.
-    ThinGaps(const ConformingMesh& mesh, double most_vertices, const std::function<bool(TetId)>& is_forced);
+    /// @param feature_size  of the mesh's domain, if somebody has it
+    ThinGaps(const ConformingMesh& mesh, double most_vertices, const std::function<bool(TetId)>& is_forced, std::unique_ptr<const LocalFeatureSize> feature_size);
 
     /// Is any gap left?
     [[nodiscard]] bool any() const { return left_.has_value(); }

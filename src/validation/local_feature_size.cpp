@@ -42,29 +42,40 @@ LocalFeatureSize::LocalFeatureSize(const ValidPlc& plc) {
         std::sort(vertices_.back().begin(), vertices_.back().end());
         for (const auto& t : f.triangles) primitives_.push_back({{point(t[0]), point(t[1]), point(t[2])}, 3, feature});
     }
-    if (!primitives_.empty()) build(0, static_cast<std::uint32_t>(primitives_.size()));
+    if (primitives_.empty()) return;
+    std::vector<Item> items;
+    std::vector<Box> boxes(primitives_.size());
+    items.reserve(primitives_.size());
+    for (const Primitive& p : primitives_) {
+        const auto i = static_cast<std::uint32_t>(items.size());
+        Vec3 sum{};
+        for (unsigned k = 0; k < p.size; ++k) {
+            sum = sum + p.corners[k];
+            boxes[i].add(p.corners[k]);
+        }
+        items.push_back({(1.0 / p.size) * sum, i});
+    }
+    build(items, boxes, 0, static_cast<std::uint32_t>(items.size()));
+    std::vector<Primitive> sorted;
+    sorted.reserve(items.size());
+    for (const Item& item : items) sorted.push_back(primitives_[item.primitive]);
+    primitives_ = std::move(sorted);
 }
 
-std::uint32_t LocalFeatureSize::build(std::uint32_t begin, std::uint32_t end) {
+std::uint32_t LocalFeatureSize::build(std::vector<Item>& items, const std::vector<Box>& boxes, std::uint32_t begin, std::uint32_t end) {
     Node node{{}, begin, end, 0};
-    for (std::uint32_t i = begin; i < end; ++i)
-        for (unsigned k = 0; k < primitives_[i].size; ++k) node.box.add(primitives_[i].corners[k]);
+    for (std::uint32_t i = begin; i < end; ++i) node.box.add(boxes[items[i].primitive]);
     const auto at = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back(node);
     if (end - begin <= kLeaf) return at;
     const std::size_t axis = node.box.longest_axis();
-    const auto centre = [axis](const Primitive& p) {
-        double sum = 0;
-        for (unsigned k = 0; k < p.size; ++k) sum += coordinate(p.corners[k], axis);
-        return sum / p.size;
-    };
     const std::uint32_t middle = begin + (end - begin) / 2;
-    std::nth_element(primitives_.begin() + begin, primitives_.begin() + middle, primitives_.begin() + end, [&](const Primitive& p, const Primitive& q) {
-        const double x = centre(p), y = centre(q);
-        return x != y ? x < y : p.feature < q.feature;
+    std::nth_element(items.begin() + begin, items.begin() + middle, items.begin() + end, [axis](const Item& p, const Item& q) {
+        const double x = coordinate(p.centre, axis), y = coordinate(q.centre, axis);
+        return x != y ? x < y : p.primitive < q.primitive;
     });
-    build(begin, middle);
-    const std::uint32_t right = build(middle, end);
+    build(items, boxes, begin, middle);
+    const std::uint32_t right = build(items, boxes, middle, end);
     nodes_[at].right = right;
     return at;
 }

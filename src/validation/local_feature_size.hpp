@@ -41,7 +41,12 @@ private:
         std::uint32_t right = 0;           // the left child follows; 0: leaf
     };
 
-    std::uint32_t build(std::uint32_t begin, std::uint32_t end);
+    /// A primitive by its centre, to be sorted in its place.
+    struct Item {
+        Vec3 centre;
+        std::uint32_t primitive;
+    };
+    std::uint32_t build(std::vector<Item>& items, const std::vector<Box>& boxes, std::uint32_t begin, std::uint32_t end);
 
     std::vector<Primitive> primitives_;
     std::vector<Node> nodes_;

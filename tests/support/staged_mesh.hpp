@@ -24,14 +24,14 @@ struct StagedMesh {
     RunControl control{};
     ValidPlc plc;
     RunGuard guard;
+    Workers workers{1};
     ConformingMesh mesh;
     AcuteGeometry acute;
     BoundaryRefiner boundary;
-    Workers workers{1};
 
     /// @param has_narrow_gaps  as of AcuteGeometry
     explicit StagedMesh(const Plc& input, const MeshOptions& wanted = {}, bool has_narrow_gaps = false)
-        : options(wanted), plc(validate(input, options)), guard(options.limits, control), mesh(plc), acute(plc, has_narrow_gaps), boundary(mesh, guard, options.seed, acute) {}
+        : options(wanted), plc(validate(input, options)), guard(options.limits, control), mesh(plc), acute(plc, workers, has_narrow_gaps), boundary(mesh, guard, options.seed, acute) {}
     StagedMesh(const StagedMesh&) = delete;
     StagedMesh& operator=(const StagedMesh&) = delete;
 

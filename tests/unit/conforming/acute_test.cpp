@@ -24,7 +24,8 @@ double uniform(std::uint64_t key, double low, double high) { return low + (high 
 TEST(AcuteGeometry, CopiesOnAFacetStayInsideTheSphere) {
     for (const double angle : {60.0, 10.0, 0.1, 0.001}) {
         const ValidPlc plc = validate(wedge(angle));
-        const AcuteGeometry acute(plc);
+        Workers workers;
+        const AcuteGeometry acute(plc, workers);
         ASSERT_TRUE(acute.any());
         // The segment where the two slopes meet at the sharpest angle.
         const AcuteFeature& sharpest = *std::find_if(plc.acute_features.begin(), plc.acute_features.end(), [](const AcuteFeature& f) { return f.kind == EntityKind::segment; });
@@ -58,7 +59,8 @@ TEST(AcuteGeometry, CopiesOnAFacetStayInsideTheSphere) {
 /// Copies from one segment to another and back are where they began: the pattern is closed under copying.
 TEST(AcuteGeometry, CopiesOnSegmentsFormOnePattern) {
     const ValidPlc plc = validate(spike(7));
-    const AcuteGeometry acute(plc);
+    Workers workers;
+    const AcuteGeometry acute(plc, workers);
     for (std::uint32_t v = 0; v < plc.vertices.size(); ++v) {
         const auto at = acute.segments_at(VertexId{v});
         for (const SegmentId s : at)
@@ -78,7 +80,8 @@ TEST(AcuteGeometry, CopiesOnSegmentsFormOnePattern) {
 
 TEST(AcuteGeometry, BallsAreDisjointAndClearOfOtherCells) {
     const ValidPlc plc = validate(bundle(3, 7));
-    AcuteGeometry acute(plc);
+    Workers workers;
+    AcuteGeometry acute(plc, workers);
     const LocalFeatureSize lfs(plc);
     for (std::size_t i = 0; i < plc.vertices.size(); ++i) {
         const double r = acute.ball_radius(VertexId{i});

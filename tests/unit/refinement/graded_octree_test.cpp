@@ -95,5 +95,49 @@ TEST(GradedOctree, LeavesThatShareACornerDifferByOneLevelAtMost) {
     }
 }
 
+/// Splits what is near a point down to so many levels, depth first; nodes of level `stop_at` are listed instead.
+void grow(GradedOctree& tree, std::uint32_t node, const Vec3& aim, unsigned levels, unsigned stop_at, std::vector<std::uint32_t>* stopped) {
+    const auto box = tree.box(node);
+    const Vec3 centre{box.lo.x + box.side / 2, box.lo.y + box.side / 2, box.lo.z + box.side / 2};
+    if (tree.depth(node) == stop_at) {
+        stopped->push_back(node);
+        return;
+    }
+    if (tree.depth(node) >= levels || norm(centre - aim) > 1.5 * box.side) {
+        if (norm(centre - aim) < 2 * box.side) tree.use(node);
+        return;
+    }
+    const std::uint32_t first = tree.split(node);
+    for (std::uint32_t k = 0; k < 8; ++k) grow(tree, first + k, aim, levels, stop_at, stopped);
+}
+
+TEST(GradedOctree, GrownInBranchesIsTheSameAsInOne) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const Vec3 aim{unit_double(mix64(seed, 1)), unit_double(mix64(seed, 2)), unit_double(mix64(seed, 3))};
+        for (const unsigned stop_at : {0U, 1U, 2U, 3U, 5U}) {
+            constexpr unsigned kLevels = 5, kNever = 99;
+            GradedOctree whole({0, 0, 0}, 1), top({0, 0, 0}, 1);
+            grow(whole, 0, aim, kLevels, kNever, nullptr);
+            std::vector<std::uint32_t> stopped;
+            grow(top, 0, aim, kLevels, stop_at, &stopped);
+            std::vector<GradedOctree::Branch> branches;
+            for (const std::uint32_t node : stopped) {
+                branches.push_back({node, top.branch(node)});
+                grow(branches.back().tree, 0, aim, kLevels, kNever, nullptr);
+            }
+            const GradedOctree joined = top.with(branches);
+            ASSERT_EQ(joined.size(), whole.size());
+            for (std::uint32_t i = 0; i < whole.size(); ++i) {
+                ASSERT_EQ(joined.is_leaf(i), whole.is_leaf(i)) << seed << ' ' << stop_at << ' ' << i;
+                ASSERT_EQ(joined.depth(i), whole.depth(i));
+                ASSERT_TRUE(joined.box(i).lo == whole.box(i).lo);
+            }
+            const auto a = lattice_of(joined), b = lattice_of(whole);
+            ASSERT_EQ(a.size(), b.size());
+            for (std::size_t i = 0; i < a.size(); ++i) ASSERT_TRUE(a[i].point == b[i].point && a[i].spacing == b[i].spacing);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace wellmesh::testing

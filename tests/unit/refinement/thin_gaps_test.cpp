@@ -28,7 +28,7 @@ std::unique_ptr<StagedMesh> conformed(const Plc& plc) {
 
 bool never(TetId) { return false; }
 
-ThinGaps gaps_in(const StagedMesh& staged, double most_vertices) { return {staged.mesh, most_vertices, never}; }
+ThinGaps gaps_in(const StagedMesh& staged, double most_vertices) { return {staged.mesh, most_vertices, never, nullptr}; }
 
 /// What all gaps take, as far as it is looked at: that of a budget for next to nothing is left.
 double demand(const StagedMesh& staged) {
@@ -178,11 +178,11 @@ TEST(ThinGaps, TetrahedraInTheGapJoinItsSides) {
 TEST(ThinGaps, WhatIsForcedIsNoGap) {
     const auto staged = conformed(slabs({0.01, 0.005}));
     const auto is_narrow = [&](TetId t) { return staged->mesh.point(staged->mesh.tets().corner(t, 0)).x > 2; };
-    const ThinGaps gaps(staged->mesh, 100, is_narrow);
+    const ThinGaps gaps(staged->mesh, 100, is_narrow, nullptr);
     ASSERT_TRUE(gaps.any());
     EXPECT_NEAR(gaps.left()->vertices + gaps.expected_vertices(), demand_of_slab(0.01), 1e-3);
     EXPECT_NEAR(gaps.left()->narrowest, 0.01, 1e-9);
-    EXPECT_FALSE(ThinGaps(staged->mesh, 100, [](TetId) { return true; }).any());
+    EXPECT_FALSE(ThinGaps(staged->mesh, 100, [](TetId) { return true; }, nullptr).any());
 }
 
 /// Sides of an acute angle are near each other, but meet.
