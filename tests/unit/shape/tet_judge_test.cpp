@@ -36,6 +36,30 @@ TEST(TetJudge, WhatIsSurelyWorseIsWorse) {
     EXPECT_GT(static_cast<double>(sure), 0.7 * static_cast<double>(worse)) << "what it is for";
 }
 
+TEST(TetJudge, EvenEdgesBoundAllAngles) {
+    const std::array<Vec3, 4> regular{Vec3{1, 1, 1}, Vec3{1, -1, -1}, Vec3{-1, 1, -1}, Vec3{-1, -1, 1}};
+    const std::array<Vec3, 4> of_lattice{Vec3{0, 0, 0}, Vec3{0, 0, 1}, Vec3{0.5, 0.5, 0.5}, Vec3{-0.5, 0.5, 0.5}};
+    const auto cosine_of = [](double degrees) { return std::cos(degrees * std::numbers::pi / 180); };
+    std::size_t sure = 0;
+    for (std::uint64_t k = 0; k < 20000; ++k)
+        for (const double scale : {1e-90, 1e-6, 1.0, 1e60}) {
+            std::array<Vec3, 4> p = k % 2 == 0 ? regular : of_lattice;
+            const double by = std::ldexp(1, -static_cast<int>(k % 53));  // from no likeness to rounding
+            for (std::size_t i = 0; i < 4; ++i) p[i] = scale * (p[i] + by * Vec3{coordinate(k, 3 * i), coordinate(k, 3 * i + 1), coordinate(k, 3 * i + 2)});
+            if (determinant(p[1] - p[0], p[2] - p[0], p[3] - p[0]) < 0) std::swap(p[2], p[3]);
+            const double worst = max_cos_dihedral(p[0], p[1], p[2], p[3]);
+            for (const double limit : {cosine_of(20), cosine_of(35), cosine_of(60), cosine_of(70.5), worst, std::nextafter(worst, 0), 0.99 * worst}) {
+                const bool is_sure = TetJudge::has_even_edges(p[0], p[1], p[2], p[3], limit);
+                ASSERT_TRUE(!is_sure || worst <= limit) << k << ' ' << scale << ' ' << limit;
+                sure += is_sure;
+            }
+        }
+    EXPECT_GT(sure, 10000U);
+    const auto& [a, b, c, d] = of_lattice;
+    EXPECT_TRUE(TetJudge::has_even_edges(a, b, d, c, cosine_of(35)) || TetJudge::has_even_edges(a, b, c, d, cosine_of(35))) << "what it is for";
+    EXPECT_FALSE(TetJudge::has_even_edges(a, c, b, d, cosine_of(35)) && TetJudge::has_even_edges(a, b, c, d, cosine_of(35))) << "inverted";
+}
+
 TEST(TetJudge, WhatIsSurelyGoodIsGood) {
     MeshOptions options;
     options.size.edge_length = 0.15;
