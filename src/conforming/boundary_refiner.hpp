@@ -95,7 +95,6 @@ public:
     BoundaryRefiner(ConformingMesh& view, BoundaryRefiner& whole, const ZoneViews& parts, std::uint8_t zone);
     /// May zones share in the work? Not where somebody keeps account of the order.
     [[nodiscard]] bool may_work_in_zones() const { return !recorder && !rules.strict && idle_but_for_queues(); }
-    /// Finds what is otherwise found when first asked for.
     /// As conform(), but what leaves the zone goes on waiting, for join(), and so does all when it may not go on.
     void conform_in_zone(const std::function<bool(std::size_t)>& may_go_on);
     void join(const BoundaryRefiner& zone);

@@ -29,9 +29,13 @@ BoundaryRefiner::BoundaryRefiner(ConformingMesh& view, BoundaryRefiner& whole, c
     take(whole.faces_, faces_, [&](const Subface& s) { return std::all_of(s.corners.begin(), s.corners.end(), is_mine); });
 }
 
+/// A zone that was told to stop has some that still wait there.
 void BoundaryRefiner::join(const BoundaryRefiner& zone) {
-    segments_.insert(segments_.end(), zone.left_segments_.begin(), zone.left_segments_.end());
-    faces_.insert(faces_.end(), zone.left_faces_.begin(), zone.left_faces_.end());
+    const auto take_over = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    take_over(segments_, zone.left_segments_);
+    take_over(segments_, zone.segments_);
+    take_over(faces_, zone.left_faces_);
+    take_over(faces_, zone.faces_);
     shortest_for_conformity_ = std::min(shortest_for_conformity_, zone.shortest_for_conformity_);
     refused_ += zone.refused_;
 }

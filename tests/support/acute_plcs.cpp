@@ -92,6 +92,29 @@ Plc spike(double angle_deg, int sides) {
     return b.take();
 }
 
+Plc bumpy_ball(int rings) {
+    Builder b;
+    const int sides = 2 * rings;
+    const auto vertex = [&](int ring, int side) {
+        const double polar = kTurn / 2 * ring / rings, azimuth = kTurn * side / sides, r = 1 + 0.2 * std::sin(4 * polar) * std::cos(5 * azimuth);
+        return b.vertex(r * std::sin(polar) * std::cos(azimuth), r * std::sin(polar) * std::sin(azimuth), r * std::cos(polar));
+    };
+    const std::uint32_t top = b.vertex(0, 0, 1), bottom = b.vertex(0, 0, -1);
+    std::vector<std::vector<std::uint32_t>> at(static_cast<std::size_t>(rings) - 1);
+    for (int ring = 1; ring < rings; ++ring)
+        for (int side = 0; side < sides; ++side) at[static_cast<std::size_t>(ring) - 1].push_back(vertex(ring, side));
+    for (std::size_t i = 0, n = at[0].size(); i < n; ++i) {
+        const std::size_t next = (i + 1) % n;
+        b.facet({top, at.front()[i], at.front()[next]});
+        b.facet({bottom, at.back()[next], at.back()[i]});
+        for (std::size_t ring = 0; ring + 1 < at.size(); ++ring) {
+            b.facet({at[ring][i], at[ring + 1][i], at[ring + 1][next]});
+            b.facet({at[ring][i], at[ring + 1][next], at[ring][next]});
+        }
+    }
+    return b.take();
+}
+
 Plc fan(int count) {
     std::vector<double> azimuths;
     for (int i = 0; i < count; ++i) azimuths.push_back(10 * kDegree + kTurn * i / count);

@@ -17,6 +17,7 @@ Plc two_blades(double angle_deg);                                 ///< two such 
 Plc tip_to_tip(double gap_deg, int sides, double twist);          ///< two open cones in the unit cube, the gap between their slopes
 Plc touching_triangles(double angle_deg);                         ///< corners of triangles inside a rectangle's edge, one at this angle to it
 Plc segments_on_a_facet(double angle_deg);                        ///< from its inside, a corner and an edge
+Plc bumpy_ball(int rings);                                        ///< triangulated, of twice as many meridians, its radius between 0.8 and 1.2
 Plc bundle(std::uint64_t seed, int triangles);                    ///< triangles around one segment in the unit cube, at random angles
 
 /// A box around 8 to 40 random points in a cube, a thin slab or a needle, 35 % of the faces of their Delaunay triangulation as facets and 10 % of its

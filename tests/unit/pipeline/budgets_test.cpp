@@ -67,6 +67,31 @@ TEST(Budgets, ATimeLimitOfAnyLengthEndsInATypedErrorOrAMesh) {
     }
 }
 
+/// Encroached pieces that wait in a zone when it is told to stop go on waiting in the whole.
+TEST(Budgets, ATimeLimitThatEndsInZonesOfTheBoundaryLeavesNothingEncroached) {
+    const Plc plc = bumpy_ball(12);
+    MeshOptions options;
+    options.size.edge_length = 0.06;
+    options.quality.min_dihedral_angle_deg = 0;
+    options.threads = 1;
+    std::size_t cut_short = 0;
+    bool finished = false;
+    for (int limit = 40; !finished; limit += 1 + limit / 12) {
+        SCOPED_TRACE(fmt::format("{} ms", limit));
+        ASSERT_LT(limit, 1'000'000);
+        options.limits.time = std::chrono::milliseconds(limit);
+        const Outcome outcome = run(plc, options, ticking());
+        if (!outcome.result) {
+            expect_typed(outcome);
+            continue;
+        }
+        expect_valid(*outcome.result);
+        finished = outcome.result->termination != Termination::time_budget_reached;
+        cut_short += !finished;
+    }
+    EXPECT_GT(cut_short, 20U);
+}
+
 TEST(Budgets, ALimitByARepeatableClockGivesTheSameMeshTwice) {
     const Plc plc = transformed(stepped_shaft(), 1, 0, 1);
     MeshOptions options;
