@@ -94,7 +94,7 @@ class Comparison:
     def warm_memory(self):
         """A process touches so much memory and gives it back: else it depends on who ran before whether the host has to bring it first."""
         if self.arguments.warm:
-            subprocess.run([sys.executable, "-c", f"bytearray({self.arguments.warm} << 20)"], check=True)
+            subprocess.run([sys.executable, "-c", f"bytearray({self.arguments.warm} << 20)"], check=False)
 
     # --- Delaunay
 
@@ -315,8 +315,8 @@ def parsed():
     parser.add_argument("--json", help="file for all numbers")
     arguments = parser.parse_args()
     arguments.min_dihedral = arguments.min_dihedral or [20.0, 30.0]
-    if arguments.repeats < 1 or arguments.threads < 1 or min(arguments.points or [4]) < 4 or min(arguments.tets or [100]) < 100:
-        parser.error("--repeats and --threads are at least 1, --points at least 4, --tets at least 100")
+    if arguments.repeats < 1 or arguments.threads < 1 or arguments.warm < 0 or min(arguments.points or [4]) < 4 or min(arguments.tets or [100]) < 100:
+        parser.error("--repeats and --threads are at least 1, --warm at least 0, --points at least 4, --tets at least 100")
     if not os.path.exists(arguments.program):
         parser.error(f"no program {arguments.program}: build the preset release, or name one by --program")
     return arguments
@@ -325,8 +325,8 @@ def parsed():
 def main():
     a = parsed()
     os.environ["OMP_NUM_THREADS"] = str(a.threads)  # HXT takes all cores otherwise, whatever its option says
-    data = {"machine": machine(), "load_before": os.getloadavg()[0], "threads": a.threads, "repeats": a.repeats, "seed": a.seed}
-    print(f"{data['machine']}; load before {data['load_before']:.2f}; {a.threads} thread{'s' if a.threads > 1 else ''} where a program has any; medians of {a.repeats}")
+    data = {"machine": machine(), "load_before": os.getloadavg()[0], "threads": a.threads, "repeats": a.repeats, "warm_mib": a.warm, "seed": a.seed}
+    print(f"{data['machine']}; load before {data['load_before']:.2f}; {a.threads} thread{'s' if a.threads > 1 else ''} where a program has any; medians of {a.repeats}{f'; {a.warm} MiB touched before each run' if a.warm else ''}")
     good, parts = True, a.part or ["delaunay", "mesh", "growth"]
     with tempfile.TemporaryDirectory() as folder:
         comparison = Comparison(a, folder)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <thread>
 #include <tuple>
 
 #include "conforming/place_point.hpp"
@@ -23,7 +24,8 @@ constexpr double kStretch = 0.2;
 
 }  // namespace
 
-AcuteGeometry::AcuteGeometry(const ValidPlc& plc, Workers& workers, bool has_narrow_gaps) : plc_(&plc), any_(!plc.acute_features.empty()), copies_(any_ || has_narrow_gaps) {
+AcuteGeometry::AcuteGeometry(const ValidPlc& plc, Workers& workers, bool has_narrow_gaps, const Checkpoint& checkpoint)
+    : plc_(&plc), any_(!plc.acute_features.empty()), copies_(any_ || has_narrow_gaps) {
     if (!copies_) return;
     acute_deg_.assign(plc.vertices.size(), 180);
     const auto note = [&](std::uint32_t v, double angle) { acute_deg_[v] = std::min(acute_deg_[v], angle); };
@@ -32,7 +34,7 @@ AcuteGeometry::AcuteGeometry(const ValidPlc& plc, Workers& workers, bool has_nar
         else
             for (const VertexId v : plc.segments[f.id].ends) note(v.value(), f.angle_deg);
     }
-    find_balls(workers);
+    find_balls(workers, checkpoint);
     list_incidences();
     list_shared_segments();
 }
@@ -96,12 +98,15 @@ bool AcuteGeometry::is_on_facet(VertexId input_vertex, FacetId f) const {
     return std::binary_search(on.begin(), on.end(), input_vertex);
 }
 
-void AcuteGeometry::find_balls(Workers& workers) {
+void AcuteGeometry::find_balls(Workers& workers, const Checkpoint& checkpoint) {
     ball_.assign(plc_->vertices.size(), 0);
     if (!any_) return;
     feature_size_ = std::make_unique<const LocalFeatureSize>(*plc_);
+    pass(checkpoint);
     constexpr std::size_t kGrain = 64;
+    const std::thread::id caller = std::this_thread::get_id();
     workers.for_ranges(ball_.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        if (std::this_thread::get_id() == caller) pass(checkpoint);
         for (std::size_t v = begin; v < end; ++v) {
             if (acute_deg_[v] == 180) continue;
             const double r = (*feature_size_)(plc_->vertices[v]) / 3;

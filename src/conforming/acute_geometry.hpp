@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
+#include "core/checkpoint.hpp"
 #include "core/compressed_rows.hpp"
 #include "core/workers.hpp"
 #include "validation/local_feature_size.hpp"
@@ -32,7 +33,8 @@ struct CarriedWitness {
 class AcuteGeometry {
 public:
     /// @param has_narrow_gaps  features that do not meet have to copy each other, too
-    AcuteGeometry(const ValidPlc& plc, Workers& workers, bool has_narrow_gaps = false);
+    /// @param checkpoint  called now and then on the caller's thread; may throw
+    AcuteGeometry(const ValidPlc& plc, Workers& workers, bool has_narrow_gaps = false, const Checkpoint& checkpoint = {});
 
     /// Is there any acute angle at all? If not, nothing below is ever needed.
     [[nodiscard]] bool any() const { return any_; }
@@ -90,7 +92,7 @@ private:
         std::uint32_t low = 0, high = 0;
         auto operator<=>(const FacetPair&) const = default;
     };
-    void find_balls(Workers& workers);
+    void find_balls(Workers& workers, const Checkpoint& checkpoint);
     void list_incidences();
     void list_shared_segments();
     [[nodiscard]] std::optional<Vec3> rotated_about(SegmentId s, FacetId f, const Vec3& q, const Vec3& centre) const;

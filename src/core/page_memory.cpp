@@ -39,7 +39,7 @@ char* map_pages(std::size_t wanted) {
 /// Of so much memory the first huge page is tried.
 constexpr std::size_t kWindow = 4 * kHugePage;
 /// Nanoseconds. Clearing 2 MB takes 0.1 to 0.3 ms; where the host of a virtual machine has taken free memory back and now brings it 4 kB at a time, 4 ms.
-constexpr std::int64_t kSlow = 1'000'000;
+std::atomic<std::int64_t> slow_page{kSlowPage};
 /// After a slow page so many askings have small pages without a trial, which costs what it finds.
 constexpr int kLeftOut = 15;
 std::atomic<int> askings_left_out{0};
@@ -56,7 +56,7 @@ bool are_slow(char* page, char* end, std::size_t step) {
     for (; page < end; page += std::min(step, static_cast<std::size_t>(end - page))) {
         const std::int64_t before = thread_clock();
         *static_cast<volatile char*>(page) = 0;
-        if (thread_clock() - before <= kSlow) continue;
+        if (thread_clock() - before <= slow_page.load(std::memory_order_relaxed)) continue;
         askings_left_out.store(kLeftOut, std::memory_order_relaxed);
         return true;
     }
@@ -99,6 +99,8 @@ void advise_huge_pages(void* data, std::size_t bytes) {
 void touch_huge_pages(void* data, std::size_t bytes, std::size_t first, std::size_t last) {
     touch_share(huge_pages_in(data, bytes), huge_pages_in(static_cast<char*>(data) + first, last - first));
 }
+
+void set_slow_page(std::int64_t nanoseconds) { slow_page.store(nanoseconds, std::memory_order_relaxed); }
 
 void* take_pages(std::size_t bytes) { return map_pages(whole_pages(bytes)); }
 
@@ -143,6 +145,7 @@ void* take_pages(std::size_t) { throw std::bad_alloc(); }
 void* grow_pages(void*, std::size_t, std::size_t) { throw std::bad_alloc(); }
 std::size_t ready_pages(void*, std::size_t bytes, std::size_t, std::size_t) { return bytes; }
 void touch_pages(void*, std::size_t, std::size_t, std::size_t) {}
+void set_slow_page(std::int64_t) {}
 void give_back_pages(void*, std::size_t) noexcept {}
 
 #endif

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace wellmesh {
 
@@ -35,5 +36,10 @@ void give_back_pages(void* pages, std::size_t bytes) noexcept;
 void advise_huge_pages(void* data, std::size_t bytes);
 /// As touch_pages(), for such memory.
 void touch_huge_pages(void* data, std::size_t bytes, std::size_t first, std::size_t last);
+
+/// Nanoseconds of a thread's work from which on a huge page comes slowly.
+inline constexpr std::int64_t kSlowPage = 1'000'000;
+/// For tests, which have no slow machine at hand: another number instead, of the whole process.
+void set_slow_page(std::int64_t nanoseconds);
 
 }  // namespace wellmesh

@@ -87,9 +87,9 @@ public:
         if (n > ready_) ready(n);
         size_ = n;
     }
-    /// For a worker, before it writes to `count` new elements that nobody has touched: see touch_pages().
+    /// For a worker, before it writes to `count` new elements that nobody has touched: see touch_pages(). Of a view it does nothing, which knows of a part only.
     void touch(std::size_t first, std::size_t count) {
-        if (is_paged(capacity_)) touch_pages(data_, capacity_ * sizeof(T), first * sizeof(T), (first + count) * sizeof(T));
+        if (owns_ && is_paged(capacity_)) touch_pages(data_, capacity_ * sizeof(T), first * sizeof(T), (first + count) * sizeof(T));
     }
     void assign(std::size_t n, const T& value) {
         size_ = 0;

@@ -64,7 +64,9 @@ public:
     Generator(const Plc& plc, const TetMesh* given, const MeshOptions& options, const RunControl& control)
         : plc_(plc), given_(given), options_(with_names_resolved(options, plc)), control_(control), guard_(options.limits, control),
           // Bulk insertion asks for its memory in large pieces, which a limit would not see coming.
-          workers_(options.limits.memory_bytes ? 1 : options.threads) {}
+          workers_(options.limits.memory_bytes ? 1 : options.threads) {
+        result_.statistics.stages.reserve(64);  // noted while an exception passes, too
+    }
 
     MeshResult run_within_memory() {
         try {
@@ -75,23 +77,21 @@ public:
     }
 
 private:
-    /// What lies between two stages counts for the second.
+    /// What lies between two stages counts for the second; a stage that throws has its own time, too.
     template <class F>
     auto timed(Stage stage, F&& work) {
         guard_.enter(stage);
-        auto note = [&] {
-            const auto end = std::chrono::steady_clock::now();
-            const std::chrono::duration<double> spent = end - std::exchange(last_end_, end);
-            result_.statistics.stages.push_back({stage, spent.count(), vertices_, tets_});
+        struct Note {
+            Generator& of;
+            Stage stage;
+            ~Note() {
+                const auto end = std::chrono::steady_clock::now();
+                const std::chrono::duration<double> spent = end - std::exchange(of.last_end_, end);
+                of.result_.statistics.stages.push_back({stage, spent.count(), of.vertices_, of.tets_});
+            }
         };
-        if constexpr (std::is_void_v<decltype(work())>) {
-            work();
-            note();
-        } else {
-            auto value = work();
-            note();
-            return value;
-        }
+        const Note note{*this, stage};
+        return work();
     }
 
     MeshResult run() {
@@ -200,7 +200,7 @@ private:
         const bool acute = !valid.acute_features.empty();
         // Where the input is acute features copy each other anyway.
         const double enough = most_for_gaps(options_.limits, static_cast<double>(mesh.vertex_count()));
-        AcuteGeometry acute_geometry(valid, workers_, !acute && options_.mode != Mode::certified && vertices_for_gaps(valid, enough) > enough);
+        AcuteGeometry acute_geometry(valid, workers_, !acute && options_.mode != Mode::certified && vertices_for_gaps(valid, enough) > enough, guard_.checkpoint());
         if (acute_geometry.copies()) guard_.set_ceiling(40 * mesh.vertex_count() + 20'000);
         BoundaryRefiner boundary(mesh, guard_, options_.seed, acute_geometry);
         const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <deque>
 #include <functional>
 #include <numeric>
-#include <thread>
 #include <unordered_set>
 #include <utility>
 
@@ -356,7 +354,8 @@ std::vector<Box> LatticeSeeder::boxes_of(const std::vector<Face>& faces) const {
 /// Splits until leaves are no larger than the lattice constants of the cells that they meet.
 class LatticeSeeder::OctreeBuilder {
 public:
-    OctreeBuilder(LatticeSeeder& seeder, GradedOctree& tree) : seeder_(seeder), tree_(tree), faces_(seeder.list_faces()), boxes_(seeder.boxes_of(faces_)) {}
+    OctreeBuilder(LatticeSeeder& seeder, GradedOctree& tree) : seeder_(seeder), tree_(tree), faces_(seeder.list_faces()), boxes_(seeder.boxes_of(faces_)),
+          guard_(seeder.guard_, seeder.mesh_.vertex_count(), seeder.mesh_.tets().live()) {}
 
     /// The first few levels, then what is below on all workers. @return false: stopped
     bool run() {
@@ -368,7 +367,7 @@ public:
         for (const Part& part : parts) branches.push_back({part.node, tree_.branch(part.node)});
         seeder_.workers_.for_each(parts.size(), [&](std::size_t i) { build(branches[i].tree, 0, parts[i].faces, parts[i].near, nullptr); });
         tree_ = tree_.with(branches);
-        return !stopped_;
+        return guard_.verdict() == RunGuard::Verdict::go_on;
     }
 
 private:
@@ -379,14 +378,10 @@ private:
         TetId near;
     };
 
-    bool may_go_on() {
-        if (std::this_thread::get_id() == caller_ && !seeder_.may_go_on(0)) stopped_ = true;
-        return !stopped_;
-    }
     /// @param faces  that meet the node's parent  @param near  where a search for the node's centre is to begin
     /// @param parts  gets the nodes of kPartDepth, which are left as they are; null: nothing is left
     void build(GradedOctree& tree, std::uint32_t node, const std::vector<std::uint32_t>& faces, TetId near, std::vector<Part>* parts) {
-        if (!may_go_on()) return;
+        if (!guard_.may_go_on(0)) return;
         if (parts != nullptr && tree.depth(node) == kPartDepth) {
             parts->push_back({node, faces, near});
             return;
@@ -419,8 +414,7 @@ private:
     GradedOctree& tree_;
     std::vector<Face> faces_;
     std::vector<Box> boxes_;  // of them
-    const std::thread::id caller_ = std::this_thread::get_id();
-    std::atomic<bool> stopped_{false};
+    SharedGuard guard_;
 };
 
 /// The lattice constant that most vertices will have is realised exactly, the others up to a power of two.

@@ -44,27 +44,23 @@ LocalFeatureSize::LocalFeatureSize(const ValidPlc& plc) {
     }
     if (primitives_.empty()) return;
     std::vector<Item> items;
-    std::vector<Box> boxes(primitives_.size());
     items.reserve(primitives_.size());
     for (const Primitive& p : primitives_) {
-        const auto i = static_cast<std::uint32_t>(items.size());
         Vec3 sum{};
-        for (unsigned k = 0; k < p.size; ++k) {
-            sum = sum + p.corners[k];
-            boxes[i].add(p.corners[k]);
-        }
-        items.push_back({(1.0 / p.size) * sum, i});
+        for (unsigned k = 0; k < p.size; ++k) sum = sum + p.corners[k];
+        items.push_back({(1.0 / p.size) * sum, static_cast<std::uint32_t>(items.size())});
     }
-    build(items, boxes, 0, static_cast<std::uint32_t>(items.size()));
-    std::vector<Primitive> sorted;
-    sorted.reserve(items.size());
-    for (const Item& item : items) sorted.push_back(primitives_[item.primitive]);
-    primitives_ = std::move(sorted);
+    build(items, 0, static_cast<std::uint32_t>(items.size()));
+    order_.reserve(items.size());
+    for (const Item& item : items) order_.push_back(item.primitive);
 }
 
-std::uint32_t LocalFeatureSize::build(std::vector<Item>& items, const std::vector<Box>& boxes, std::uint32_t begin, std::uint32_t end) {
+std::uint32_t LocalFeatureSize::build(std::vector<Item>& items, std::uint32_t begin, std::uint32_t end) {
     Node node{{}, begin, end, 0};
-    for (std::uint32_t i = begin; i < end; ++i) node.box.add(boxes[items[i].primitive]);
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const Primitive& p = primitives_[items[i].primitive];
+        for (unsigned k = 0; k < p.size; ++k) node.box.add(p.corners[k]);
+    }
     const auto at = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back(node);
     if (end - begin <= kLeaf) return at;
@@ -74,8 +70,8 @@ std::uint32_t LocalFeatureSize::build(std::vector<Item>& items, const std::vecto
         const double x = coordinate(p.centre, axis), y = coordinate(q.centre, axis);
         return x != y ? x < y : p.primitive < q.primitive;
     });
-    build(items, boxes, begin, middle);
-    const std::uint32_t right = build(items, boxes, middle, end);
+    build(items, begin, middle);
+    const std::uint32_t right = build(items, middle, end);
     nodes_[at].right = right;
     return at;
 }
@@ -102,7 +98,7 @@ double LocalFeatureSize::operator()(const Vec3& x) const {
                 continue;
             }
             for (std::uint32_t i = node.begin; i < node.end; ++i) {
-                const auto& [corners, size, feature] = primitives_[i];
+                const auto& [corners, size, feature] = primitives_[order_[i]];
                 const double d = size == 1   ? norm(x - corners[0])
                                  : size == 2 ? distance_to_segment(x, corners[0], corners[1])
                                              : distance_to_triangle(x, corners[0], corners[1], corners[2]);

@@ -37,7 +37,7 @@ private:
     };
     struct Node {
         Box box;
-        std::uint32_t begin = 0, end = 0;  // primitives of a leaf
+        std::uint32_t begin = 0, end = 0;  // into order_, of a leaf
         std::uint32_t right = 0;           // the left child follows; 0: leaf
     };
 
@@ -46,9 +46,10 @@ private:
         Vec3 centre;
         std::uint32_t primitive;
     };
-    std::uint32_t build(std::vector<Item>& items, const std::vector<Box>& boxes, std::uint32_t begin, std::uint32_t end);
+    std::uint32_t build(std::vector<Item>& items, std::uint32_t begin, std::uint32_t end);
 
     std::vector<Primitive> primitives_;
+    std::vector<std::uint32_t> order_;  // of them
     std::vector<Node> nodes_;
     std::vector<std::vector<std::uint32_t>> vertices_;  // of each feature's closure, ascending
 };

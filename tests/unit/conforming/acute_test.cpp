@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "conforming/acute_exemptions.hpp"
 #include "conforming/acute_geometry.hpp"
@@ -76,6 +77,21 @@ TEST(AcuteGeometry, CopiesOnSegmentsFormOnePattern) {
                 EXPECT_NEAR(back->distance, distance(o, q), 1e-14);
             }
     }
+}
+
+TEST(AcuteGeometry, RadiiAreTheSameForAnyThreadsAndCanBeStopped) {
+    const ValidPlc plc = validate(bumpy_ball(16));
+    Workers alone(1), three(3);
+    const AcuteGeometry one(plc, alone), other(plc, three);
+    ASSERT_TRUE(one.any());
+    EXPECT_GT(*std::max_element(one.balls().begin(), one.balls().end()), 0);
+    EXPECT_EQ(one.balls(), other.balls());
+    unsigned looks = 0;
+    const auto stop = [&] {
+        if (++looks == 3) throw std::runtime_error("stop");
+    };
+    EXPECT_THROW(AcuteGeometry(plc, alone, false, stop), std::runtime_error);
+    EXPECT_EQ(looks, 3U) << "before and amid the radii";
 }
 
 TEST(AcuteGeometry, BallsAreDisjointAndClearOfOtherCells) {

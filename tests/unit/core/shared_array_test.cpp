@@ -70,6 +70,30 @@ TEST(SharedArray, ShrinksAndGrowsWithinWhatIsReserved) {
     for (std::uint64_t i = 100; i < array.size(); ++i) ASSERT_EQ(array[i].d, 8U) << i;
 }
 
+/// Small and huge pages in turns: arrays grow, move and keep what they hold all the same.
+TEST(SharedArray, DoesNotMindSlowPages) {
+    SharedArray<Item> grows, is_reserved;
+    constexpr std::int64_t kAllAreSlow = -1, kNoneIs = 1'000'000'000'000;
+    unsigned fills = 0;
+    const auto fill = [&](SharedArray<Item>& array, std::size_t more) {
+        const std::size_t first = array.size();
+        set_slow_page(++fills % 5 == 0 ? kAllAreSlow : kNoneIs);
+        array.resize_as_is(first + more);
+        set_slow_page(fills % 7 == 0 ? kAllAreSlow : kNoneIs);  // those of a share are, where the first ones were not
+        array.touch(first, more);
+        for (std::uint64_t i = first; i < first + more; ++i) array[i] = {i, ~i, 0, 0};
+    };
+    is_reserved.reserve(3'000'000);
+    for (unsigned round = 0; round < 48; ++round) {
+        fill(grows, 150'001);
+        fill(is_reserved, 60'001);
+        if (round % 16 == 5) grows.reserve(grows.size() + 700'000);
+    }
+    set_slow_page(kSlowPage);
+    for (const SharedArray<Item>* array : {&grows, &is_reserved})
+        for (std::uint64_t i = 0; i < array->size(); ++i) ASSERT_TRUE((*array)[i].a == i && (*array)[i].b == ~i) << i;
+}
+
 #ifdef __linux__
 
 /// Since the last call the process has held at most so many bytes; 0 if the system doesn't say.
