@@ -3,7 +3,7 @@
 import math
 import os
 
-from common import diagonal, points_of
+from common import diagonal, points_of, surface_of
 
 PLACES = {"as given": (False, 0.0), "rotated": (True, 0.0), "1e3 away": (True, 1e3), "1e6 away": (True, 1e6)}  # rotated?, shift in diagonals
 
@@ -26,27 +26,14 @@ def placement(model, place):
 
 
 def write_off(model, path, put):
-    """A copy as plain OFF: of an OFF file without normals and colours, of an STL file with its triangles as they are."""
+    """A copy of a surface as plain OFF."""
+    points, polygons = surface_of(model)
     with open(path, "w") as out:
-        if model.lower().endswith(".stl"):
-            corners = list(points_of(model))
-            numbers = {}
-            for p in corners:
-                numbers.setdefault(p, len(numbers))
-            out.write(f"OFF\n{len(numbers)} {len(corners) // 3} 0\n")
-            for p in numbers:
-                out.write(" ".join(repr(c) for c in put(p)) + "\n")
-            for i in range(0, len(corners), 3):
-                out.write("3 " + " ".join(str(numbers[p]) for p in corners[i:i + 3]) + "\n")
-            return
-        lines = [line.split("#")[0].split() for line in open(model)]
-        lines = [line for line in lines if line]
-        vertices, faces = int(lines[1][0]), int(lines[1][1])
-        out.write(f"OFF\n{vertices} {faces} 0\n")
-        for line in lines[2:2 + vertices]:
-            out.write(" ".join(repr(c) for c in put([float(x) for x in line[:3]])) + "\n")
-        for line in lines[2 + vertices:2 + vertices + faces]:
-            out.write(" ".join(line[:1 + int(line[0])]) + "\n")
+        out.write(f"OFF\n{len(points)} {len(polygons)} 0\n")
+        for p in points:
+            out.write(" ".join(repr(c) for c in put(p)) + "\n")
+        for polygon in polygons:
+            out.write(f"{len(polygon)} {' '.join(map(str, polygon))}\n")
 
 
 def write_poly(model, path, put):
