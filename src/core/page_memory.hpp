@@ -21,13 +21,15 @@ inline constexpr std::size_t kLeastPaged = std::size_t{1} << 21;
 [[nodiscard]] void* take_pages(std::size_t bytes);
 /// The same content in more memory; `pages` is no more. @throws std::bad_alloc, with nothing changed
 [[nodiscard]] void* grow_pages(void* pages, std::size_t bytes, std::size_t more_bytes);
-/// To be called before bytes are touched that weren't yet, of `pages` of so many `bytes`: what is touched next is put on huge pages, where there is enough of it and
-/// the machine has them at hand (docs/decisions/0034-slow-pages.md). Visits at random miss the translation buffer with small ones. A hint: nothing depends on it.
+/// To be called before bytes are touched that weren't yet, of `pages` of so many `bytes`: what is touched next is put on huge pages, where there is enough
+/// of it and the machine has them at hand (docs/decisions/0034-slow-pages.md). Visits at random miss the translation buffer with small ones. A hint: nothing
+/// depends on it.
 /// @param ready   so many of the first bytes were told of before
 /// @param wanted  so many are to be touched now
 /// @return so many may be touched before the next call; at least `wanted`
 [[nodiscard]] std::size_t ready_pages(void* pages, std::size_t bytes, std::size_t ready, std::size_t wanted);
-/// Touches the huge pages among bytes `first` to `last` of pages that ready_pages() was told of, until they turn out to come slowly. For several threads, each with a share.
+/// Touches the huge pages among bytes `first` to `last` of pages that ready_pages() was told of, until they turn out to come slowly. For several threads,
+/// each with a share.
 /// @pre nobody has touched that share
 void touch_pages(void* pages, std::size_t bytes, std::size_t first, std::size_t last);
 void give_back_pages(void* pages, std::size_t bytes) noexcept;

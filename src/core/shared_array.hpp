@@ -87,7 +87,7 @@ public:
         if (n > ready_) ready(n);
         size_ = n;
     }
-    /// For a worker, before it writes to `count` new elements that nobody has touched: see touch_pages(). Of a view it does nothing, which knows of a part only.
+    /// For a worker, before it writes to `count` new elements that nobody has touched: see touch_pages(). A view, which knows of a part only, does nothing.
     void touch(std::size_t first, std::size_t count) {
         if (owns_ && is_paged(capacity_)) touch_pages(data_, capacity_ * sizeof(T), first * sizeof(T), (first + count) * sizeof(T));
     }
