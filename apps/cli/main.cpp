@@ -105,7 +105,7 @@ int run(int argc, char** argv) {
 }
 
 /// Blocks from 1 MB on are mapped on their own, and the system's again once freed. glibc's own threshold grows with what is freed, up to 32 MB, and large
-/// arrays that lie in the heap leave holes: 4 to 7 bytes a tetrahedron. It takes the place of MALLOC_MMAP_THRESHOLD_, and the heap's end goes back from 128 kB on.
+/// arrays that lie in the heap leave holes: up to 7 bytes a tetrahedron. It takes the place of MALLOC_MMAP_THRESHOLD_, and the heap's end goes back from 128 kB on.
 void map_large_blocks() {
 #ifdef __GLIBC__
     (void)::mallopt(M_MMAP_THRESHOLD, 1 << 20);
