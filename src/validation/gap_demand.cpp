@@ -12,27 +12,44 @@ constexpr Halvings kThorough{6, 8};
 
 }  // namespace
 
-double vertices_for_gaps(const ValidPlc& plc, double enough) {
+double vertices_for_gaps(const ValidPlc& plc, double enough, Workers& workers) {
+    constexpr std::size_t kGrain = 32, kAtOnce = 8;
     const LocalFeatureSize size(plc);
-    std::vector<double> at_vertex;
-    for (const Vec3& p : plc.vertices) at_vertex.push_back(size(p));
+    std::vector<double> at_vertex(plc.vertices.size());
+    workers.for_ranges(at_vertex.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) at_vertex[v] = size(plc.vertices[v]);
+    });
     double sum = 0;
-    for (const ValidFacet& f : plc.facets)
-        for (const auto& t : f.triangles) {
-            const std::array<Vec3, 3> corners{plc.vertices[t[0].index()], plc.vertices[t[1].index()], plc.vertices[t[2].index()]};
-            sample_gap(size, corners, {at_vertex[t[0].index()], at_vertex[t[1].index()], at_vertex[t[2].index()]}, [&](double area, double width) {
-                if (area > kSlender * kSlender * width * width) sum += vertices_beside_facet(area, width);
-            }, kThorough);
-            if (sum > enough) return sum;
+    // Of some at once; there may be a lot less to look at than all.
+    const auto add = [&](std::size_t count, const auto& vertices_of) {
+        std::vector<double> vertices;
+        for (std::size_t first = 0; first < count && sum <= enough; first += kAtOnce) {
+            vertices.assign(std::min(kAtOnce, count - first), 0);
+            workers.for_each(vertices.size(), [&](std::size_t i) { vertices[i] = vertices_of(first + i); });
+            for (const double v : vertices) sum += v;
         }
-    for (const ValidSegment& s : plc.segments) {
-        const Vec3 &a = plc.vertices[s.ends[0].index()], &b = plc.vertices[s.ends[1].index()];
+    };
+    std::vector<std::array<VertexId, 3>> triangles;
+    for (const ValidFacet& f : plc.facets) triangles.insert(triangles.end(), f.triangles.begin(), f.triangles.end());
+    add(triangles.size(), [&](std::size_t i) {
+        const auto& t = triangles[i];
+        const std::array<Vec3, 3> corners{plc.vertices[t[0].index()], plc.vertices[t[1].index()], plc.vertices[t[2].index()]};
+        double vertices = 0;
+        sample_gap(size, corners, {at_vertex[t[0].index()], at_vertex[t[1].index()], at_vertex[t[2].index()]}, [&](double area, double width) {
+            if (area > kSlender * kSlender * width * width) vertices += vertices_beside_facet(area, width);
+        }, kThorough);
+        return vertices;
+    });
+    add(plc.segments.size(), [&](std::size_t i) {
+        const auto& ends = plc.segments[i].ends;
+        const Vec3 &a = plc.vertices[ends[0].index()], &b = plc.vertices[ends[1].index()];
         const double whole = distance(a, b);
-        sample_gap(size, std::array{a, b}, std::array{at_vertex[s.ends[0].index()], at_vertex[s.ends[1].index()]}, [&](double length, double width) {
-            if (whole > kSlender * width) sum += vertices_beside_segment(length, width);
+        double vertices = 0;
+        sample_gap(size, std::array{a, b}, std::array{at_vertex[ends[0].index()], at_vertex[ends[1].index()]}, [&](double length, double width) {
+            if (whole > kSlender * width) vertices += vertices_beside_segment(length, width);
         });
-        if (sum > enough) return sum;
-    }
+        return vertices;
+    });
     return sum;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/vec3_math.hpp"
+#include "core/workers.hpp"
 #include "validation/local_feature_size.hpp"
 #include "validation/valid_plc.hpp"
 
@@ -75,6 +76,6 @@ void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 2>& ends, c
 }
 
 /// Vertices that filling all narrow gaps of a complex takes, gaps outside the domain included; or any number above `enough` that they take at least.
-[[nodiscard]] double vertices_for_gaps(const ValidPlc& plc, double enough);
+[[nodiscard]] double vertices_for_gaps(const ValidPlc& plc, double enough, Workers& workers);
 
 }  // namespace wellmesh

@@ -81,11 +81,20 @@ bool LocalFeatureSize::incident(std::uint32_t f, std::uint32_t g) const { return
 double LocalFeatureSize::operator()(const Vec3& x) const {
     // Boxes and primitives by distance: primitives as negative numbers, so that they come before boxes equally far.
     using Entry = std::pair<double, std::int64_t>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting;
+    std::vector<Entry> entries;
+    entries.reserve(64);
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting(std::greater<>{}, std::move(entries));
     const auto push_node = [&](std::uint32_t n) { waiting.push({nodes_[n].box.distance_to(x), n}); };
     if (!nodes_.empty()) push_node(0);
     std::vector<std::uint32_t> met;
-    std::unordered_set<std::uint32_t> known;
+    // Few are met but beside an apex of many.
+    constexpr std::size_t kFew = 16;
+    std::unordered_set<std::uint32_t> known;  // the same once there are more
+    const auto is_known = [&](std::uint32_t feature) {
+        if (met.size() <= kFew) return std::find(met.begin(), met.end(), feature) != met.end();
+        if (known.empty()) known.insert(met.begin(), met.end());
+        return !known.insert(feature).second;
+    };
     std::vector<std::uint32_t> common;  // vertices of all that were met: at the apex of a thousand features they are all incident there
     while (!waiting.empty()) {
         const auto [distance, what] = waiting.top();
@@ -107,7 +116,7 @@ double LocalFeatureSize::operator()(const Vec3& x) const {
             continue;
         }
         const auto feature = static_cast<std::uint32_t>(-1 - what);
-        if (!known.insert(feature).second) continue;
+        if (is_known(feature)) continue;
         const std::vector<std::uint32_t>& own = vertices_[feature];
         if (met.empty()) common = own;
         else std::erase_if(common, [&](std::uint32_t v) { return !std::binary_search(own.begin(), own.end(), v); });

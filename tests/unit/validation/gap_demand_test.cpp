@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kAll = std::numeric_limits<double>::infinity();
 
-double demand(const Plc& plc, double enough = kAll) { return vertices_for_gaps(validate(plc), enough); }
+double demand(const Plc& plc, double enough = kAll) { Workers workers(2); return vertices_for_gaps(validate(plc), enough, workers); }
 
 TEST(GapDemand, NothingWithoutGaps) {
     for (const NamedPlc& named : all_synthetic_plcs()) EXPECT_EQ(demand(named.plc), 0) << named.name;
