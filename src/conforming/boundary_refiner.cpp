@@ -47,15 +47,19 @@ void BoundaryRefiner::visit_encroached(TetId t, OnEdge&& on_edge, OnFace&& on_fa
     }
 }
 
+template <class Segments, class Faces>
+void BoundaryRefiner::list_encroached(TetId t, Segments& segments, Faces& faces) const {
+    visit_encroached(
+        t,
+        [&](unsigned e, VertexId by) {
+            const auto& c = mesh_.tets().corners(t);
+            segments.push_back({{c[kEdgeCorners[e][0]], c[kEdgeCorners[e][1]], mesh_.labels(t).segments[e]}, by});
+        },
+        [&](unsigned f, VertexId by) { faces.push_back({{mesh_.tets().face_corners(TetFace{t, f}), mesh_.labels(t).facets[f]}, by}); });
+}
+
 void BoundaryRefiner::enqueue_encroached(const std::vector<TetId>& tets) {
-    for (const TetId t : tets)
-        visit_encroached(
-            t,
-            [&](unsigned e, VertexId by) {
-                const auto& c = mesh_.tets().corners(t);
-                segments_.push_back({{c[kEdgeCorners[e][0]], c[kEdgeCorners[e][1]], mesh_.labels(t).segments[e]}, by});
-            },
-            [&](unsigned f, VertexId by) { faces_.push_back({{mesh_.tets().face_corners(TetFace{t, f}), mesh_.labels(t).facets[f]}, by}); });
+    for (const TetId t : tets) list_encroached(t, segments_, faces_);
 }
 
 bool BoundaryRefiner::has_encroached(TetId t) const {
@@ -69,6 +73,34 @@ void BoundaryRefiner::enqueue_all_encroached() {
     for (std::size_t i = 0; i < mesh_.tets().slots(); ++i)
         if (mesh_.tets().is_live(TetId{i}) && mesh_.has_labels(TetId{i})) labelled.push_back(TetId{i});
     enqueue_encroached(labelled);
+}
+
+/// @return false, with some of them waiting, if labels and cells contradict each other
+bool BoundaryRefiner::enqueue_all_encroached(Workers& workers) {
+    constexpr std::size_t kGrain = std::size_t{1} << 14;
+    struct Found {
+        std::vector<WaitingSegment> segments;
+        std::vector<WaitingFace> faces;
+        bool agree = true;
+    };
+    const std::size_t slots = mesh_.tets().slots();
+    std::vector<Found> found((slots + kGrain - 1) / kGrain);
+    workers.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        Found& here = found[piece];
+        for (std::size_t i = begin; i < end; ++i) {
+            const TetId t{i};
+            if (!mesh_.has_labels(t) || !mesh_.tets().is_live(t)) continue;
+            here.agree = here.agree && is_on_its_side(mesh_, t);
+            list_encroached(t, here.segments, here.faces);
+        }
+    });
+    bool agree = true;
+    for (const Found& f : found) {
+        segments_.insert(segments_.end(), f.segments.begin(), f.segments.end());
+        faces_.insert(faces_.end(), f.faces.begin(), f.faces.end());
+        agree = agree && f.agree;
+    }
+    return agree;
 }
 
 void BoundaryRefiner::find_encroached(const Cavity& cavity, const Placement& where, std::vector<Subsegment>& segments, std::vector<Subface>& faces) const {
@@ -210,8 +242,9 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_here(const Subsegment& s, c
     const Vec3 a = mesh_.point(s.a), b = mesh_.point(s.b);
     const std::uint64_t key = mix64(seed_, mix64(std::min(s.a, s.b).value(), std::max(s.a, s.b).value()));
     const Placement where = Placement::on_segment(s);
+    std::optional<AcutePlace> place;
     if (acute_.copies()) {
-        const auto place = place_on_segment(s, request);
+        place = place_on_segment(s, request);
         if (!place) return SplitOutcome::refused;
         if (request.for_conformity() || place->info.ball.valid()) return split_acute(s, *place, request);
     }
@@ -236,7 +269,11 @@ BoundaryRefiner::SplitOutcome BoundaryRefiner::split_here(const Subsegment& s, c
                 chosen = k;
                 sliver_free = true;
             }
-    if (distance(a, b) < kShortestPiece * segment_length(s.segment) || !found(chosen)) return give_up(s);
+    if (distance(a, b) < kShortestPiece * segment_length(s.segment) || !found(chosen)) {
+        // A ball that was halved for this may still hold the middle, but not the place of the copy.
+        const bool is_in_ball = place && acute_.in_ball_of_segment(s.segment, middle + (jitter / 2) * (b - a));
+        return is_in_ball && !acute_.in_ball_of_segment(s.segment, place->point) ? split_acute(s, *place, request) : give_up(s);
+    }
     if (refuses(request, radius)) return SplitOutcome::refused;
     if (!mesh_.may_insert(cavity_, where)) return SplitOutcome::left_zone;
     const VertexId v = insert_on_segment(s, {.reason = request.reason, .parent = request.parent});

@@ -16,6 +16,7 @@
 #include "conforming/conforming_mesh.hpp"
 #include "conforming/insertion_recorder.hpp"
 #include "core/run_guard.hpp"
+#include "core/workers.hpp"
 
 namespace wellmesh {
 
@@ -72,6 +73,8 @@ public:
     /// Makes every segment a chain of edges and every facet a union of faces, then finds the cell of every tetrahedron.
     /// @throws MeshError{budget_exhausted, cancelled, unsupported_acute}
     void recover_all();
+    /// The same after relabel(): recovers what is broken, then finds all cells.
+    void recover_broken(Workers& workers);
     /// Splits until nothing is encroached; recovers what splits destroyed. @throws as recover_all does.
     void conform();
     /// Splits at most one subsegment or subface. @return false if none is waiting.
@@ -142,11 +145,15 @@ private:
 
     template <class OnEdge, class OnFace>
     void visit_encroached(TetId t, OnEdge&& on_edge, OnFace&& on_face) const;
+    template <class Segments, class Faces>
+    void list_encroached(TetId t, Segments& segments, Faces& faces) const;
     void recover_segments();
     bool recover_facet(FacetId f);
+    void recover_facets(std::vector<FacetId> todo);
     void repair_broken();
     void refresh_cells();
     void find_all_cells();
+    bool enqueue_all_encroached(Workers& workers);
     void drain_segments();
     void inserted(VertexId v);
     bool refuses(const SplitRequest& request, double radius);
@@ -212,6 +219,9 @@ void classify_cells(ConformingMesh& mesh);
 /// The same for live tetrahedra whose cell is unknown, all others keeping theirs. @return false if what surrounds them does not tell, or contradicts
 /// itself: then all must be found again.
 [[nodiscard]] bool classify_again(ConformingMesh& mesh, const std::vector<TetId>& unknown);
+
+/// Do all labelled faces of t have t's cell on its side, as far as they show it?
+[[nodiscard]] bool is_on_its_side(const ConformingMesh& mesh, TetId t);
 
 /// Distance from cavity.point to the nearest vertex, which is one of the cavity's: nearest neighbours are Delaunay neighbours.
 [[nodiscard]] double distance_to_nearest(const ConformingMesh& mesh, const Cavity& cavity);

@@ -25,6 +25,17 @@ constexpr double kSure = 0.5;  // cosine: a needle-thin subface may be turned by
 
 }  // namespace
 
+bool is_on_its_side(const ConformingMesh& mesh, TetId t) {
+    for (unsigned f = 0; f < 4; ++f) {
+        const FacetId facet = mesh.facet_at(TetFace{t, f});
+        if (!facet.valid()) continue;
+        double sure = 0;
+        const CellId c = cell_beside(mesh, TetFace{t, f}, facet, sure);
+        if (sure >= kSure && c != mesh.cell(t)) return false;
+    }
+    return true;
+}
+
 bool classify_again(ConformingMesh& mesh, const std::vector<TetId>& unknown) {
     const TetStore& tets = mesh.tets();
     const CellId none = mesh.unknown_cell();

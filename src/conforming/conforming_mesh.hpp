@@ -168,6 +168,16 @@ public:
     /// Inserts those of such vertices that it can, in their order. @return as above
     std::vector<VertexId> insert_inside(Workers& workers, std::span<const VertexId> vertices, const std::function<bool(const Vec3&, CellId)>& is_welcome,
                                         const std::function<bool()>& may_go_on, std::vector<VertexId>& encroaching);
+    /// Gives a number to a point that is to be a vertex; it is not inserted yet. @param ball  as in VertexInfo
+    VertexId add_vertex(const CarriedPoint& p, InsertionReason reason, VertexId ball = {});
+    /// Inserts such vertices, wherever they are, on all workers. All labels and cells are lost, and ids of tetrahedra are new: relabel() comes next.
+    /// @param order  neighbours in space near each other, in rounds of growing size (delaunay/spatial_order.hpp)  @pre there is no savepoint
+    void insert_at_once(Workers& workers, std::span<const std::uint32_t> order);
+    /// Labels these edges and faces, as all that there are. Segments and facets of which one is not there are broken then.
+    void relabel(Workers& workers, std::span<const Subsegment> segments, std::span<const Subface> faces);
+    /// Gives tetrahedra the cell of a vertex of theirs that is inside one; those that have none are forgotten. @pre all segments and facets are whole, for what
+    /// they do not cross is all in one cell; and there is no savepoint
+    void find_cells_by_vertices(Workers& workers);
     /// Known tetrahedra take the place of those that are there. @param fresh  vertices that have a number, and whose whole stars are known  @param goes_on  as of
     /// Triangulation::find_region  @return false, with nothing changed: that refuses, or what is there has labels, or several cells within one rim.
     /// @pre there is no savepoint

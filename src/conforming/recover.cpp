@@ -127,16 +127,31 @@ void BoundaryRefiner::find_all_cells() {
 
 void BoundaryRefiner::recover_all() {
     recover_segments();
-    // A point on one facet may destroy faces of another: go round until a whole round changes nothing.
     std::vector<FacetId> todo;
     for (std::size_t i = 0; i < mesh_.plc().facets.size(); ++i) todo.push_back(FacetId{i});
+    recover_facets(std::move(todo));
+    find_all_cells();
+}
+
+void BoundaryRefiner::recover_broken(Workers& workers) {
+    drain_segments();
+    recover_facets(mesh_.take_broken_facets());
+    mesh_.find_cells_by_vertices(workers);
+    if (classify_again(mesh_, mesh_.take_forgotten()) && enqueue_all_encroached(workers)) return;
+    segments_.clear();
+    faces_.clear();
+    find_all_cells();
+}
+
+/// A point on one facet may destroy faces of another: goes round until a whole round changes nothing.
+void BoundaryRefiner::recover_facets(std::vector<FacetId> todo) {
     while (!todo.empty()) {
         for (const FacetId f : todo) recover_facet(f);
         drain_segments();
         todo = mesh_.take_broken_facets();
     }
     faces_.clear();
-    find_all_cells();
+    cells_stale_ = false;
 }
 
 }  // namespace wellmesh

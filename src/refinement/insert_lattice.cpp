@@ -25,8 +25,6 @@ namespace {
 constexpr double kClearance = 0.5;
 /// Of the lattice constant: takes exact symmetry away, costs nothing in shape.
 constexpr double kLatticeJitter = 1e-4;
-/// How a seed goes in: alone (0), in bulk (1), or in bulk unless its tetrahedra turn out to be known.
-constexpr char kKnown = 2;
 /// Of known tetrahedra while they are put in: corners and neighbours, cell, number of labels, and what arrays have to spare.
 constexpr std::size_t kBytesATet = 48;
 /// The lattice's margin is a third of its constant; rounded to so many steps of the coordinates it is the lattice still.
@@ -69,15 +67,6 @@ std::vector<LatticeSeeder::Seed> LatticeSeeder::seeds_of(const std::vector<Latti
     return seeds;
 }
 
-/// What seeds keep away from.
-struct LatticeSeeder::Boundary {
-    std::vector<Face> faces;
-    std::vector<Box> boxes;  ///< of the faces, then vertices
-    BoxTree tree;
-    std::vector<Box> balls;  ///< about acute vertices
-    double widest = 0;       ///< no seed keeps farther away; infinite where that is not known beforehand
-};
-
 /// On all workers first: whether seeds are clear of the boundary, and encroach upon it, does not depend on what else is there. Then those in balls,
 /// in their order.
 /// @param lattice  when all seeds are to go in: those far from everything else need not be inserted, as their tetrahedra are known
@@ -86,22 +75,34 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds, Lattice* lattice) {
     std::vector<char> in_bulk(seeds.size(), 0);
     std::optional<LatticeFilling> filling;
     if (!guard_.has_too_many(mesh_.vertex_count() + seeds.size())) {
-        const Boundary boundary = find_boundary();
+        const Boundary boundary = find_boundary(list_faces());
         in_bulk = find_clear(boundary, seeds);
-        const Vec3 &low = mesh_.triangulation().low(), &high = mesh_.triangulation().high();
-        const double largest = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y), std::abs(high.z)});
-        const double step = std::numeric_limits<double>::epsilon() * largest;
-        if (lattice != nullptr && lattice->tree->smallest_side() >= kLeastSteps * step) {
-            filling.emplace(*lattice->tree, lattice->leaves, occupied(boundary, lattice->tree->smallest_side()), workers_);
-            lattice->tree.reset();  // memory is short when all tetrahedra are there
-            std::vector<std::uint32_t>().swap(lattice->leaves.of_node);
-            const std::vector<char> is_far = filling->far_points(seeds.size());
-            for (std::size_t k = 0; k < seeds.size(); ++k)
-                if (in_bulk[k] != 0 && is_far[seeds[k].number] != 0) in_bulk[k] = kKnown;
-        }
+        if (lattice != nullptr) find_filling(*lattice, boundary, seeds, in_bulk, filling);
         return_freed_memory();
         if (!insert_in_bulk(seeds, in_bulk)) return false;
     }
+    if (!insert_left(seeds, in_bulk)) return false;
+    return !filling || fill(seeds, in_bulk, std::move(*filling));
+}
+
+/// Of tetrahedra that need not be searched for; none if the lattice is too fine for its coordinates. Takes the lattice's octree.
+/// @param in_bulk  gets which seeds they are those of
+void LatticeSeeder::find_filling(Lattice& lattice, const Boundary& boundary, std::span<const Seed> seeds, std::vector<char>& in_bulk, std::optional<LatticeFilling>& filling,
+                                 const BoundarySample* sample) {
+    const Vec3 &low = mesh_.triangulation().low(), &high = mesh_.triangulation().high();
+    const double largest = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y), std::abs(high.z)});
+    const double step = std::numeric_limits<double>::epsilon() * largest;
+    if (!(lattice.tree->smallest_side() >= kLeastSteps * step)) return;
+    filling.emplace(*lattice.tree, lattice.leaves, occupied(boundary, lattice.tree->smallest_side(), sample), workers_);
+    lattice.tree.reset();  // memory is short when all tetrahedra are there
+    std::vector<std::uint32_t>().swap(lattice.leaves.of_node);
+    const std::vector<char> is_far = filling->far_points(seeds.size());
+    for (std::size_t k = 0; k < seeds.size(); ++k)
+        if (in_bulk[k] != 0 && is_far[seeds[k].number] != 0) in_bulk[k] = kKnown;
+}
+
+/// One by one.
+bool LatticeSeeder::insert_left(std::span<Seed> seeds, const std::vector<char>& in_bulk) {
     TetId near{};
     for (std::size_t k = 0; k < seeds.size(); ++k) {
         Seed& s = seeds[k];
@@ -112,24 +113,47 @@ bool LatticeSeeder::insert_seeds(std::span<Seed> seeds, Lattice* lattice) {
         s.waits = outcome == Outcome::encroaches;  // finer boundaries are encroached by fewer
         inserted_ += outcome == Outcome::inserted;
     }
-    return !filling || fill(seeds, in_bulk, std::move(*filling));
+    return true;
 }
 
-LatticeSeeder::Boundary LatticeSeeder::find_boundary() {
-    std::vector<Face> faces = list_faces();
+/// @param pieces  of segments, whose and the faces' spheres are to be kept free, if any; else those of the mesh are
+LatticeSeeder::Boundary LatticeSeeder::find_boundary(std::vector<Face> faces, std::span<const Subsegment> pieces) {
     std::vector<Box> boxes = boxes_of(faces);
-    for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v)  // those of facets lie in them
-        if (mesh_.info(VertexId{v}).carrier == CarrierKind::segment || mesh_.info(VertexId{v}).carrier == CarrierKind::input_vertex)
-            boxes.push_back({mesh_.point(VertexId{v}), mesh_.point(VertexId{v})});
+    std::vector<Boundary::Sphere> spheres;
+    if (pieces.empty()) {
+        for (std::size_t v = 0; v < mesh_.vertex_slots(); ++v)  // those of facets lie in them
+            if (mesh_.info(VertexId{v}).carrier == CarrierKind::segment || mesh_.info(VertexId{v}).carrier == CarrierKind::input_vertex)
+                boxes.push_back({mesh_.point(VertexId{v}), mesh_.point(VertexId{v})});
+    } else {
+        boxes.resize(faces.size() + pieces.size());
+        spheres.resize(boxes.size());
+        workers_.for_ranges(boxes.size(), kBoxGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) {
+                double radius = 0;
+                if (i < faces.size()) {
+                    const auto& [a, b, c] = faces[i].corners;
+                    spheres[i].centre = circumcentre(mesh_.point(a), mesh_.point(b), mesh_.point(c), &radius);
+                } else {
+                    const Subsegment& s = pieces[i - faces.size()];
+                    for (const VertexId v : {s.a, s.b}) boxes[i].add(mesh_.point(v));
+                    spheres[i].centre = 0.5 * (mesh_.point(s.a) + mesh_.point(s.b));
+                    radius = distance(mesh_.point(s.a), mesh_.point(s.b)) / 2;
+                }
+                spheres[i].squared_radius = radius < kInfinity ? radius * radius : 0;
+            }
+        });
+    }
     BoxTree tree(boxes, workers_);
-    Boundary boundary{std::move(faces), std::move(boxes), std::move(tree), {}, 0};
-    for (const double radius : radius_) boundary.widest = std::max(boundary.widest, sizes_.varies() ? kInfinity : radius < kInfinity ? kClearance * radius : 0);
+    Boundary boundary{std::move(faces), pieces, std::move(boxes), std::move(spheres), std::move(tree), {}, 0};
+    const double clearance = boundary.spheres.empty() ? kClearance : 1;
+    for (const double radius : radius_) boundary.widest = std::max(boundary.widest, sizes_.varies() ? kInfinity : radius < kInfinity ? clearance * radius : 0);
     boundary.balls = boundary_.acute().boxes_of_balls();
     return boundary;
 }
 
 /// Boxes around all that must not come near a star of the lattice's: what is no seed, and the space in which a seed would encroach.
-std::vector<Box> LatticeSeeder::occupied(const Boundary& boundary, double least_spacing) const {
+/// @param sample  what the boundary is going to be; null: it is that of the mesh
+std::vector<Box> LatticeSeeder::occupied(const Boundary& boundary, double least_spacing, const BoundarySample* sample) const {
     std::vector<Box> out = boundary.boxes;
     out.insert(out.end(), boundary.balls.begin(), boundary.balls.end());
     workers_.for_ranges(boundary.faces.size(), kBoxGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -146,17 +170,22 @@ std::vector<Box> LatticeSeeder::occupied(const Boundary& boundary, double least_
     const auto& segments = mesh_.plc().segments;
     const bool has_wires = std::any_of(segments.begin(), segments.end(), [](const auto& s) { return s.facets.empty(); });
     if (!has_wires && !sizes_.varies()) return out;
+    const auto add_segment = [&](VertexId a, VertexId b) {
+        Box box{mesh_.point(a), mesh_.point(a)};
+        box.add(mesh_.point(b));
+        out.push_back(box.grown(distance(mesh_.point(a), mesh_.point(b)) / 2));
+    };
+    if (sample != nullptr) {
+        for (const Subsegment& s : sample->segments) add_segment(s.a, s.b);
+        for (const Subface& s : sample->faces) out.push_back(space_of(s.corners[0], s.corners[1], s.corners[2], least_spacing));
+        return out;
+    }
     for (std::size_t i = 0; i < mesh_.tets().slots(); ++i) {
         const TetId t{i};
         if (!mesh_.has_labels(t) || !mesh_.tets().is_finite(t)) continue;
         const TetLabels& l = mesh_.labels(t);
-        for (unsigned e = 0; e < 6; ++e) {
-            if (!l.segments[e].valid()) continue;
-            const Vec3 &a = mesh_.point(mesh_.tets().corner(t, kEdgeCorners[e][0])), &b = mesh_.point(mesh_.tets().corner(t, kEdgeCorners[e][1]));
-            Box box{a, a};
-            box.add(b);
-            out.push_back(box.grown(distance(a, b) / 2));
-        }
+        for (unsigned e = 0; e < 6; ++e)
+            if (l.segments[e].valid()) add_segment(mesh_.tets().corner(t, kEdgeCorners[e][0]), mesh_.tets().corner(t, kEdgeCorners[e][1]));
         for (unsigned f = 0; f < 4; ++f) {
             if (!l.facets[f].valid()) continue;
             const auto c = mesh_.tets().face_corners(TetFace{t, f});
@@ -177,18 +206,19 @@ Box LatticeSeeder::space_of(VertexId a, VertexId b, VertexId c, double least_spa
 }
 
 /// Which seeds are in a cell that wants them, clear of the boundary, and in no ball about an acute vertex: balls give way one by one. Those that are
-/// not clear wait no longer.
-std::vector<char> LatticeSeeder::find_clear(const Boundary& boundary, std::span<Seed> seeds) {
+/// not clear wait no longer. @param cells  gets that of each
+std::vector<char> LatticeSeeder::find_clear(const Boundary& boundary, std::span<Seed> seeds, std::vector<CellId>* cells) {
     // Neighbours along the curve are looked at together: most of them are far from the boundary, all at once.
     constexpr std::size_t kBlock = 32, kBlocks = 32;
     const BoxTree ball_tree(boundary.balls, workers_);
     std::vector<char> is_clear(seeds.size(), 0);
+    if (cells != nullptr) cells->assign(seeds.size(), CellId{0});
     workers_.for_ranges(seeds.size(), kBlock * kBlocks, [&](std::size_t begin, std::size_t end, std::size_t) {
         TetId near{};
         std::vector<std::uint32_t> candidates;
         for (; begin < end; begin += kBlock) {
             const std::span<Seed> block = seeds.subspan(begin, std::min(kBlock, end - begin));
-            find_clear_of(boundary, block, near, candidates);
+            find_clear_of(boundary, block, cells == nullptr ? std::span<CellId>{} : std::span(*cells).subspan(begin, block.size()), near, candidates);
             for (std::size_t k = 0; k < block.size(); ++k) {
                 bool in_ball = false;
                 if (block[k].waits)
@@ -202,7 +232,8 @@ std::vector<char> LatticeSeeder::find_clear(const Boundary& boundary, std::span<
 }
 
 /// Those that are not, or in no cell that wants them, wait no longer.
-void LatticeSeeder::find_clear_of(const Boundary& boundary, std::span<Seed> block, TetId& near, std::vector<std::uint32_t>& candidates) const {
+void LatticeSeeder::find_clear_of(const Boundary& boundary, std::span<Seed> block, std::span<CellId> cells, TetId& near,
+                                  std::vector<std::uint32_t>& candidates) const {
     Box around;
     for (const Seed& s : block)
         if (s.waits) around.add(s.point);
@@ -220,6 +251,7 @@ void LatticeSeeder::find_clear_of(const Boundary& boundary, std::span<Seed> bloc
         list_candidates(boundary.widest);
         if (candidates.empty()) {  // no face between them: all are in the same cell, or in cells that want none
             const bool wanted = radius_of(around.low) < kInfinity;
+            std::fill(cells.begin(), cells.end(), mesh_.cell(near));
             for (Seed& s : block) s.waits = s.waits && wanted;
             return;
         }
@@ -230,19 +262,41 @@ void LatticeSeeder::find_clear_of(const Boundary& boundary, std::span<Seed> bloc
         const double radius = radius_of(block[k].point);
         block[k].waits = radius < kInfinity;
         if (block[k].waits) reach[k] = kClearance * radius;
+        if (!cells.empty()) cells[k] = mesh_.cell(near);
     }
-    if (boundary.widest == kInfinity) list_candidates(*std::max_element(reach.begin(), reach.end()));
-    for (std::size_t k = 0; k < block.size(); ++k) {
-        Seed& s = block[k];
-        for (const std::uint32_t i : candidates) {
-            if (!s.waits) break;
-            if (!(boundary.boxes[i].squared_distance_to(s.point) < reach[k] * reach[k])) continue;
-            if (i < boundary.faces.size()) {
-                const auto& [a, b, c] = boundary.faces[i].corners;
-                if (!(squared_distance_to_triangle(s.point, mesh_.point(a), mesh_.point(b), mesh_.point(c)) < reach[k] * reach[k])) continue;
-            }
-            s.waits = false;
+    const bool has_spheres = !boundary.spheres.empty();
+    // What is within the bound has its sphere within it; what is larger will be split anyhow.
+    const double spheres_reach = has_spheres ? 1 / kClearance : 1;
+    if (boundary.widest == kInfinity) list_candidates(spheres_reach * *std::max_element(reach.begin(), reach.end()));
+    const auto is_clear = [&](const Vec3& p, double distance, std::uint32_t i) {
+        if (has_spheres && squared_distance(boundary.spheres[i].centre, p) < boundary.spheres[i].squared_radius) return false;
+        if (!(boundary.boxes[i].squared_distance_to(p) < distance * distance)) return true;
+        if (i >= boundary.faces.size()) {
+            const auto is_near = [&](VertexId v) { return squared_distance(mesh_.point(v), p) < distance * distance; };
+            return has_spheres && !is_near(boundary.pieces[i - boundary.faces.size()].a) && !is_near(boundary.pieces[i - boundary.faces.size()].b);
         }
+        const auto& [a, b, c] = boundary.faces[i].corners;
+        return !(squared_distance_to_triangle(p, mesh_.point(a), mesh_.point(b), mesh_.point(c)) < distance * distance);
+    };
+    // A few of the block at once need look at a few of the candidates only.
+    constexpr std::size_t kFew = 4;
+    std::vector<std::uint32_t> near_these;
+    for (std::size_t first = 0; first < block.size(); first += kFew) {
+        const std::size_t end = std::min(first + kFew, block.size());
+        Box few;
+        double farthest = 0;
+        for (std::size_t k = first; k < end; ++k) {
+            if (!block[k].waits) continue;
+            few.add(block[k].point);
+            farthest = std::max(farthest, spheres_reach * reach[k]);
+        }
+        if (few.empty()) continue;
+        few = few.grown(farthest * (1 + 1e-9));
+        near_these.clear();
+        for (const std::uint32_t i : candidates)
+            if (boundary.boxes[i].meets(few)) near_these.push_back(i);
+        for (std::size_t k = first; k < end; ++k)
+            block[k].waits = block[k].waits && std::all_of(near_these.begin(), near_these.end(), [&](std::uint32_t i) { return is_clear(block[k].point, reach[k], i); });
     }
 }
 
@@ -279,6 +333,7 @@ bool LatticeSeeder::insert_in_bulk(std::span<Seed> seeds, std::span<const std::u
     const Welcomes is_welcome = [this](const Vec3& p, CellId c) { return radius_at(p, c) < kInfinity; };
     const std::size_t before = mesh_.vertex_count();
     std::vector<VertexId> encroaching;
+    tets_are_numbered_ = false;
     const std::vector<VertexId> left = insert_all(is_welcome, goes_on, encroaching);
     inserted_ += mesh_.vertex_count() - before;
     const auto seed_of = [&](VertexId v) -> Seed& {
@@ -340,7 +395,7 @@ bool LatticeSeeder::fill(std::span<Seed> seeds, const std::vector<char>& in_bulk
     std::vector<char>().swap(is_there);
     return_freed_memory();
     // Numbers first, while there are few: known tetrahedra come after all others, or in the places of those that they replace.
-    mesh_.renumber_tets(workers_);
+    if (!tets_are_numbered_) mesh_.renumber_tets(workers_);
     if (!may_go_on(fresh.size())) return false;
     filling->know(is_known, vertex_of, mesh_.vertex_slots());
     const auto goes_on = [&] { return may_go_on(fresh.size()); };

@@ -30,6 +30,8 @@ constexpr double kLeastUse = 0.82;
 /// Ratios of spacings modulo 2 are told apart to a part of 2^(1/64) - 1, one per cent.
 constexpr std::size_t kPhases = 64;
 constexpr std::size_t kGrain = std::size_t{1} << 14;
+/// Of a mesh while its vertices go in at once: six or seven tetrahedra, and what is known of each. And how many there can be.
+constexpr double kBytesAVertex = 500, kMostVertices = 4e9;
 
 }  // namespace
 
@@ -354,7 +356,8 @@ std::vector<Box> LatticeSeeder::boxes_of(const std::vector<Face>& faces) const {
 /// Splits until leaves are no larger than the lattice constants of the cells that they meet.
 class LatticeSeeder::OctreeBuilder {
 public:
-    OctreeBuilder(LatticeSeeder& seeder, GradedOctree& tree) : seeder_(seeder), tree_(tree), faces_(seeder.list_faces()), boxes_(seeder.boxes_of(faces_)),
+    OctreeBuilder(LatticeSeeder& seeder, GradedOctree& tree, std::vector<Face> faces)
+        : seeder_(seeder), tree_(tree), faces_(std::move(faces)), boxes_(seeder.boxes_of(faces_)),
           guard_(seeder.guard_, seeder.mesh_.vertex_count(), seeder.mesh_.tets().live()) {}
 
     /// The first few levels, then what is below on all workers. @return false: stopped
@@ -457,13 +460,20 @@ double LatticeSeeder::most_used_spacing() const {
     return base;
 }
 
+/// Where nobody keeps account of the order, and nothing is to end it half way: a limit on vertices, or on memory that may not be enough.
+bool LatticeSeeder::may_seed_at_once() const {
+    if (!boundary_.may_work_in_zones() || guard_.limits_vertices() || mesh_.savepoints() > 0) return false;
+    return guard_.has_room_for(static_cast<std::uint64_t>(kBytesAVertex * std::min(sizes_.expected_vertices(), kMostVertices)));
+}
+
 std::uint64_t LatticeSeeder::seed() {
     const double base = most_used_spacing();
     if (base == kInfinity) return 0;
+    if (may_seed_at_once() && seed_at_once(base)) return inserted_;
     // From coarse to fine: vertices on an empty domain's boundary would all be neighbours of each other.
     constexpr double kCoarsest = 8;
     if (!split_boundary(kCoarsest)) return 0;
-    std::optional<Lattice> lattice = find_lattice(base);
+    std::optional<Lattice> lattice = find_lattice(base, list_faces());
     if (!lattice) return 0;
     std::vector<Seed> seeds = seeds_of(lattice->points);
     std::vector<LatticePoint>().swap(lattice->points);
@@ -485,7 +495,7 @@ std::uint64_t LatticeSeeder::seed() {
     return inserted_;
 }
 
-std::optional<LatticeSeeder::Lattice> LatticeSeeder::find_lattice(double base) {
+std::optional<LatticeSeeder::Lattice> LatticeSeeder::find_lattice(double base, std::vector<Face> faces) {
     Vec3 lo, hi;
     bounding_box(mesh_.plc().vertices, lo, hi);
     const double extent = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
@@ -493,7 +503,7 @@ std::optional<LatticeSeeder::Lattice> LatticeSeeder::find_lattice(double base) {
     while (side < extent) side *= 2;
     std::optional<Lattice> out(Lattice{GradedOctree(0.5 * (lo + hi) - 0.5 * Vec3{side, side, side}, side), {}, {}});
     GradedOctree& tree = *out->tree;
-    if (!OctreeBuilder(*this, tree).run()) return {};
+    if (!OctreeBuilder(*this, tree, std::move(faces)).run()) return {};
     tree.balance();
     out->points = tree.lattice(workers_, out->leaves);
     return out;

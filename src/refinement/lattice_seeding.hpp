@@ -17,6 +17,7 @@
 #include "conforming/savepoint.hpp"
 #include "core/run_guard.hpp"
 #include "core/workers.hpp"
+#include "refinement/boundary_sample.hpp"
 #include "refinement/graded_octree.hpp"
 #include "sizing/size_field.hpp"
 #include "validation/box_tree.hpp"
@@ -73,7 +74,7 @@ private:
         LatticeLeaves leaves;
         std::vector<LatticePoint> points;
     };
-    [[nodiscard]] std::optional<Lattice> find_lattice(double base);
+    [[nodiscard]] std::optional<Lattice> find_lattice(double base, std::vector<Face> faces);
     /// A point of the lattice that waits, moved by its jitter.
     struct Seed {
         Vec3 point{};
@@ -82,16 +83,41 @@ private:
         std::uint32_t waits : 1 = 1;
     };
     static_assert(sizeof(Seed) == 32);
+    /// How a seed goes in: alone (0), in bulk (1), or in bulk unless its tetrahedra turn out to be known.
+    static constexpr char kKnown = 2;
     using Welcomes = std::function<bool(const Vec3&, CellId)>;
     using GoesOn = std::function<bool()>;
     [[nodiscard]] std::vector<Seed> seeds_of(const std::vector<LatticePoint>& lattice);
     bool insert_seeds(std::span<Seed> seeds, Lattice* lattice);
-    struct Boundary;
-    [[nodiscard]] Boundary find_boundary();
-    [[nodiscard]] std::vector<Box> occupied(const Boundary& boundary, double least_spacing) const;
+    [[nodiscard]] bool may_seed_at_once() const;
+    bool seed_at_once(double base);
+    bool make_whole(std::size_t points);
+    [[nodiscard]] double vertices_at_acute_segments() const;
+    void number_points(BoundarySample& sample);
+    void insert_at_once(const BoundarySample& sample, std::span<Seed> seeds, const std::vector<char>& which, std::span<const CellId> cells);
+    /// What seeds keep away from.
+    struct Boundary {
+        struct Sphere {
+            Vec3 centre{};
+            double squared_radius = 0;
+        };
+        std::vector<Face> faces;
+        std::span<const Subsegment> pieces;
+        std::vector<Box> boxes;       ///< of the faces, then vertices, or pieces of segments
+        std::vector<Sphere> spheres;  ///< what encroaches upon each is in it; none: that is found out later
+        BoxTree tree;
+        std::vector<Box> balls;  ///< about acute vertices
+        double widest = 0;       ///< no seed keeps farther away; infinite where that is not known beforehand
+    };
+    [[nodiscard]] Boundary find_boundary(std::vector<Face> faces, std::span<const Subsegment> pieces = {});
+    void find_filling(Lattice& lattice, const Boundary& boundary, std::span<const Seed> seeds, std::vector<char>& in_bulk, std::optional<LatticeFilling>& filling,
+                      const BoundarySample* sample = nullptr);
+    bool insert_left(std::span<Seed> seeds, const std::vector<char>& in_bulk);
+    [[nodiscard]] std::vector<Face> faces_of(const BoundarySample& sample) const;
+    [[nodiscard]] std::vector<Box> occupied(const Boundary& boundary, double least_spacing, const BoundarySample* sample) const;
     [[nodiscard]] Box space_of(VertexId a, VertexId b, VertexId c, double least_spacing) const;
-    [[nodiscard]] std::vector<char> find_clear(const Boundary& boundary, std::span<Seed> seeds);
-    void find_clear_of(const Boundary& boundary, std::span<Seed> block, TetId& near, std::vector<std::uint32_t>& candidates) const;
+    [[nodiscard]] std::vector<char> find_clear(const Boundary& boundary, std::span<Seed> seeds, std::vector<CellId>* cells = nullptr);
+    void find_clear_of(const Boundary& boundary, std::span<Seed> block, std::span<CellId> cells, TetId& near, std::vector<std::uint32_t>& candidates) const;
     bool insert_in_bulk(std::span<Seed> seeds, const std::vector<char>& which);
     template <class InsertAll>
     bool insert_in_bulk(std::span<Seed> seeds, std::span<const std::uint32_t> numbers, InsertAll&& insert_all);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Acute input: the lemmas behind the copies, the bars for conformity, and what exemptions promise.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "core/vec3_math.hpp"
 #include "support/acute_plcs.hpp"
 #include "support/staged_mesh.hpp"
+#include "support/synthetic_plcs.hpp"
 #include "wellmesh/generate.hpp"
 
 namespace wellmesh::testing {
@@ -165,6 +167,35 @@ TEST(AcuteExemptions, CertificateRefutesOnesInside) {
     EXPECT_EQ(certify(result.mesh, options).find("exemptions")->state, Claim::State::proven);
     options.exempt = {result.mesh.tets.size()};
     EXPECT_EQ(certify(result.mesh, options).find("exemptions")->state, Claim::State::refuted);
+}
+
+/// Unit squares at one segment, `angle` degrees apart, in a box.
+Plc book(double angle, std::uint32_t pages) {
+    Plc plc = cube();
+    for (Vec3& p : plc.vertices) p = {4 * p.x - 2, 4 * p.y - 2, 3 * p.z - 1};
+    const auto spine = static_cast<std::uint32_t>(plc.vertices.size());
+    plc.vertices.insert(plc.vertices.end(), {{0, 0, 0}, {0, 0, 1}});
+    for (std::uint32_t k = 0; k < pages; ++k) {
+        const double t = angle * k * std::numbers::pi / 180;
+        const auto first = static_cast<std::uint32_t>(plc.vertices.size());
+        plc.vertices.insert(plc.vertices.end(), {{std::cos(t), std::sin(t), 0}, {std::cos(t), std::sin(t), 1}});
+        PlcFacet page = plc.facets[0];
+        page.polygons = {{spine, spine + 1, first + 1, first}};
+        plc.facets.push_back(page);
+    }
+    return plc;
+}
+
+/// A size finer than a ball halves it, and the middle of what is split may be inside still: it goes where the copy goes.
+TEST(Acute, SizesBelowBallsEnd) {
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        SCOPED_TRACE(fmt::format("seed {}", seed));
+        MeshOptions options;
+        options.size.edge_length = 0.15;
+        options.quality.min_dihedral_angle_deg = 0;
+        options.seed = seed;
+        EXPECT_GT(generate(book(5, 4), options).mesh.tets.size(), 1000U);
+    }
 }
 
 }  // namespace

@@ -192,6 +192,23 @@ TEST(LatticeSeeding, KnownTetrahedraKeepAwayFromAllThatIsInside) {
     EXPECT_GT(seeded(cube(), options, 1).known, 100U);
 }
 
+/// Two plates so near to each other that each facet would be split for the sake of the other's points: they are made from coarse to fine, on any number of threads.
+TEST(LatticeSeeding, FacetsTooNearToEachOtherAreNotMadeAtOnce) {
+    Plc plc = cube();
+    const auto first = static_cast<std::uint32_t>(plc.vertices.size());
+    for (const double z : {0.5, 0.508})
+        for (const auto& [x, y] : {std::pair{0.05, 0.05}, {0.95, 0.05}, {0.95, 0.95}, {0.05, 0.95}}) plc.vertices.push_back({x, y, z});
+    for (std::uint32_t k = 0; k < 2; ++k) {
+        PlcFacet facet = plc.facets[0];
+        facet.polygons = {{first + 4 * k, first + 4 * k + 1, first + 4 * k + 2, first + 4 * k + 3}};
+        plc.facets.push_back(facet);
+    }
+    const Seeded one = seeded(plc, sized(0.05), 1), several = seeded(plc, sized(0.05), 2);
+    EXPECT_GT(one.seeds, 1000U);
+    EXPECT_TRUE(several.points == one.points);
+    EXPECT_TRUE(several.tets == one.tets);
+}
+
 /// What is known would be there at once: a limit on memory is kept by insertion.
 TEST(LatticeSeeding, KnownTetrahedraKeepTheLimitOnMemory) {
     MeshOptions options = sized(0.05);

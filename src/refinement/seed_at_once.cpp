@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Boundary and lattice in one go, where nothing asks for their order.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "core/infinity.hpp"
+#include "core/resident_memory.hpp"
+#include "core/shared_guard.hpp"
+#include "core/vec3_math.hpp"
+#include "delaunay/spatial_order.hpp"
+#include "refinement/lattice_filling.hpp"
+#include "refinement/lattice_seeding.hpp"
+
+namespace wellmesh {
+namespace {
+
+/// Of all seeds, one in so many goes in where tetrahedra are known, too: across an empty space all are neighbours of all.
+constexpr std::size_t kScaffold = 64;
+/// Vertices that make the boundary whole, over those that it got at once: with more the mesh is worse than one made from coarse to fine.
+constexpr double kMostMore = 0.07;
+/// Facets at this angle, in degrees, need no copies of each other's vertices.
+constexpr double kNoTrouble = 40;
+/// Vertices beside sharper ones, over all of the boundary: copies need their order, and refinement pays for what goes without.
+constexpr double kMostAcute = 0.02;
+
+}  // namespace
+
+/// All at once: boundary and lattice go in together, and the boundary is looked at when they are in. Facets that know nothing of each other may come too near
+/// to each other, at acute angles and across gaps; where splitting them for that takes a lot of vertices it is better done from coarse to fine.
+/// @return false, the mesh being as it was, if that is so
+bool LatticeSeeder::seed_at_once(double base) {
+    std::optional<BoundarySample> sample;
+    {
+        SharedGuard guard(guard_, mesh_.vertex_count(), mesh_.tets().live());
+        const auto radius = [&](const Vec3& p, CellId c) { return radius_at(p, c); };
+        sample = sample_boundary(mesh_, boundary_.acute(), radius, sizes_.varies(), boundary_.seed(), workers_, guard);
+    }
+    if (!sample) return true;
+    if (vertices_at_acute_segments() > kMostAcute * static_cast<double>(sample->points.size())) return false;
+    std::optional<ConformingMesh> before(mesh_);
+    const std::vector<double> balls = boundary_.acute().balls();
+    number_points(*sample);
+    std::optional<Lattice> lattice = find_lattice(base, faces_of(*sample));
+    if (!lattice) return true;
+    std::vector<Seed> seeds = seeds_of(lattice->points);
+    std::vector<LatticePoint>().swap(lattice->points);
+    std::vector<char> in_bulk;
+    std::vector<CellId> cells;
+    std::optional<LatticeFilling> filling;
+    {
+        std::vector<Subsegment> pieces = sample->segments;
+        for (const VertexId v : mesh_.plc().isolated_vertices) pieces.push_back({v, v, SegmentId{}});
+        const Boundary boundary = find_boundary(faces_of(*sample), pieces);
+        in_bulk = find_clear(boundary, seeds, &cells);
+        find_filling(*lattice, boundary, seeds, in_bulk, filling, &*sample);
+    }
+    return_freed_memory();
+    if (!may_go_on(seeds.size())) return true;
+    insert_at_once(*sample, seeds, in_bulk, cells);
+    std::vector<CellId>().swap(cells);
+    if (!make_whole(sample->points.size())) {
+        mesh_ = std::move(*before);
+        boundary_.forget_waiting();
+        boundary_.acute().set_balls(balls);
+        tets_are_numbered_ = false;
+        return false;
+    }
+    before.reset();
+    for (const Seed& s : seeds) inserted_ += s.vertex.valid() && mesh_.triangulation().is_inserted(s.vertex);
+    sample.reset();
+    if (!may_go_on(seeds.size()) || !insert_left(seeds, in_bulk)) return true;
+    mesh_.pack_records(workers_);
+    if (filling && !fill(seeds, in_bulk, std::move(*filling))) return true;
+    std::vector<Seed>().swap(seeds);
+    lattice.reset();
+    return_freed_memory();
+    if (!tets_are_numbered_) mesh_.renumber_tets(workers_);
+    return true;
+}
+
+/// Recovers the boundary, conforms, and splits what is too large still. @param points  that it got at once  @return false, half way, if that takes too many more
+bool LatticeSeeder::make_whole(std::size_t points) {
+    const std::size_t most = mesh_.vertex_count() + static_cast<std::size_t>(kMostMore * static_cast<double>(points));
+    try {
+        boundary_.recover_broken(workers_);
+        tets_are_numbered_ = true;
+        do {
+            if (mesh_.vertex_count() > most && may_go_on(0)) return false;  // a run that is to end keeps what it has
+        } while (boundary_.step());
+        (void)split_boundary(1);
+        return true;
+    } catch (const MeshError& e) {
+        if (e.code() != ErrorCode::budget_exhausted && e.code() != ErrorCode::unsupported_acute) throw;
+        return false;
+    }
+}
+
+/// Vertices at which facets that meet at an acute angle are nearer to each other than vertices of one of them.
+double LatticeSeeder::vertices_at_acute_segments() const {
+    double sum = 0;
+    for (const AcuteFeature& f : mesh_.plc().acute_features) {
+        if (f.kind != EntityKind::segment || f.angle_deg >= kNoTrouble) continue;
+        const ValidSegment& s = mesh_.plc().segments[f.id];
+        const Vec3 &a = mesh_.plc().vertices[s.ends[0].index()], &b = mesh_.plc().vertices[s.ends[1].index()];
+        double radius = kInfinity;
+        for (const FacetId facet : s.facets)
+            for (const CellId c : mesh_.plc().facets[facet.index()].cells)
+                if (mesh_.is_filled(c)) radius = std::min(radius, radius_at(0.5 * (a + b), c));
+        sum += distance(a, b) / radius / std::sin(f.angle_deg / 2 * std::numbers::pi / 180);
+    }
+    return sum;
+}
+
+/// Vertices along a curve in space.
+void LatticeSeeder::number_points(BoundarySample& sample) {
+    std::vector<Vec3> points;
+    points.reserve(sample.points.size());
+    for (const BoundarySample::Point& p : sample.points) points.push_back(p.at.point);
+    const std::vector<std::uint32_t> order = biased_spatial_order(points, workers_);
+    const std::size_t first = mesh_.vertex_slots();
+    std::vector<VertexId> vertex_of(order.size());
+    for (const std::uint32_t k : order) {
+        const BoundarySample::Point& p = sample.points[k];
+        vertex_of[k] = mesh_.add_vertex(p.at, InsertionReason::boundary_by_size, p.ball);
+        sample.vertices.push_back(vertex_of[k]);
+    }
+    const auto rename = [&](VertexId& v) {
+        if (v.index() >= first) v = vertex_of[v.index() - first];
+    };
+    for (Subsegment& s : sample.segments) {
+        rename(s.a);
+        rename(s.b);
+    }
+    for (Subface& s : sample.faces) std::for_each(s.corners.begin(), s.corners.end(), rename);
+}
+
+/// As list_faces() does it of faces of the mesh.
+std::vector<LatticeSeeder::Face> LatticeSeeder::faces_of(const BoundarySample& sample) const {
+    std::vector<Face> out;
+    for (const Subface& s : sample.faces) {
+        const Vec3 middle = (1.0 / 3) * (mesh_.point(s.corners[0]) + mesh_.point(s.corners[1]) + mesh_.point(s.corners[2]));
+        double spacing = kInfinity;
+        for (const CellId c : mesh_.plc().facets[s.facet.index()].cells)
+            if (mesh_.is_filled(c)) spacing = std::min(spacing, spacing_at(middle, c));
+        if (spacing < kInfinity) out.push_back({s.corners, spacing});
+    }
+    return out;
+}
+
+/// Together with what the boundary gets. What is labelled then is what was asked for, as far as it is there.
+void LatticeSeeder::insert_at_once(const BoundarySample& sample, std::span<Seed> seeds, const std::vector<char>& which, std::span<const CellId> cells) {
+    std::vector<std::uint32_t> vertices;  // to go in
+    std::vector<Vec3> points;
+    for (const VertexId v : sample.vertices) vertices.push_back(v.value());
+    const std::size_t scaffold = seeds.size() / kScaffold;
+    for (std::size_t k = 0; k < seeds.size(); ++k) {
+        seeds[k].waits = which[k] == 0 && seeds[k].waits != 0;
+        if (which[k] == 0) continue;
+        seeds[k].vertex = mesh_.add_vertex({seeds[k].point, CarrierKind::region, cells[k].value()}, InsertionReason::lattice);
+        if (which[k] != kKnown || k < scaffold) vertices.push_back(seeds[k].vertex.value());
+    }
+    points.reserve(vertices.size());
+    for (const std::uint32_t v : vertices) points.push_back(mesh_.point(VertexId{v}));
+    std::vector<std::uint32_t> order = biased_spatial_order(points, workers_);
+    for (std::uint32_t& k : order) k = vertices[k];
+    mesh_.insert_at_once(workers_, order);
+    mesh_.relabel(workers_, sample.segments, sample.faces);
+}
+
+}  // namespace wellmesh
