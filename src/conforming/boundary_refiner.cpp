@@ -68,13 +68,6 @@ bool BoundaryRefiner::has_encroached(TetId t) const {
     return found;
 }
 
-void BoundaryRefiner::enqueue_all_encroached() {
-    std::vector<TetId> labelled;
-    for (std::size_t i = 0; i < mesh_.tets().slots(); ++i)
-        if (mesh_.tets().is_live(TetId{i}) && mesh_.has_labels(TetId{i})) labelled.push_back(TetId{i});
-    enqueue_encroached(labelled);
-}
-
 /// @return false, with some of them waiting, if labels and cells contradict each other
 bool BoundaryRefiner::enqueue_all_encroached(Workers& workers) {
     constexpr std::size_t kGrain = std::size_t{1} << 14;

@@ -104,7 +104,6 @@ public:
 
     /// Looks for encroached subsegments and subfaces among the new tetrahedra.
     void enqueue_encroached(const std::vector<TetId>& tets);
-    void enqueue_all_encroached();
     /// Does a corner of t encroach a labelled edge or face of t?
     [[nodiscard]] bool has_encroached(TetId t) const;
 

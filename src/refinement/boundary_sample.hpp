@@ -31,7 +31,8 @@ struct BoundarySample {
 
 /// Splits subsegments into equal pieces, then refines the Delaunay triangulation of each facet (planar_refiner.hpp). Balls about acute vertices stay as they are.
 /// What is not found here, or not right, is left as it was: splitting in space goes on from there.
-/// @param mesh  conforms; where sizes vary segments without facets are left to splitting in space  @param radius  (point, cell) -> greatest circumradius of tetrahedra there; infinite: none asked for. From any thread
+/// @param mesh  conforms; where sizes vary segments without facets are left to splitting in space
+/// @param radius  (point, cell) -> greatest circumradius of tetrahedra there; infinite: none asked for. From any thread
 /// @param varies  whether that depends on the point  @return nothing if the guard said stop
 [[nodiscard]] std::optional<BoundarySample> sample_boundary(const ConformingMesh& mesh, const AcuteGeometry& acute, const std::function<double(const Vec3&, CellId)>& radius,
                                                             bool varies, std::uint64_t seed, Workers& workers, SharedGuard& guard);
