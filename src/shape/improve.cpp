@@ -104,7 +104,7 @@ RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) 
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     mending_.begin_pass();
     // What comes and goes, and what an acute angle forces, is for the whole mesh.
-    if (last_resort == LastResort::none && !leaves_forced_ && !refiner_.gaps().any()) verdict = zones_.mend(samples);
+    if (!leaves_forced_ && !refiner_.gaps().any()) verdict = zones_.mend(samples, last_resort != LastResort::none);
     if (verdict != RunGuard::Verdict::go_on) return verdict;
     mending_.last_resort = {};
     mending_.is_mostly_stuck = {};
@@ -232,6 +232,8 @@ RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, Savepoint& last
 RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_at_start, bool& reached) {
     const auto is_below = [&](const Bad& b) { return b.badness > rung_cosine && !given_up_.contains(key_of(b.corners)); };
     const auto below = [&] { return std::any_of(left().begin(), left().end(), is_below); };
+    // Beside what an acute angle forces some tetrahedra stay for ever, which says nothing about the others.
+    const bool by_number = refiner_.may_excuse();
     std::optional<Savepoint> last;
     double last_worst = 0;
     std::size_t last_left = 0;
@@ -241,17 +243,15 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
         if (spent || round == kSplitRounds || (!last && !guard_.can_double())) break;
         if (!last) {
             last.emplace(mesh_);
-            last_worst = worst_cosine();
+            if (!by_number) last_worst = worst_cosine();
             last_left = left().size();
         }
         verdict = split_or_go_back(rung_cosine, *last);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
-    if (mesh_.tets().live() > kManyTets) mending_.collect(workers_);
+    if (last && mesh_.tets().live() > kManyTets) mending_.collect(workers_);
     reached = !below();
     if (reached) return verdict;
-    // Beside what an acute angle forces some tetrahedra stay for ever, which says nothing about the others.
-    const bool by_number = refiner_.may_excuse();
     const bool no_better = by_number ? last_left <= left().size() : last_worst <= worst_cosine();
     if (last && (no_better || guard_.has_too_many(mesh_.vertex_count()))) {
         last->go_back();

@@ -158,7 +158,7 @@ bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
         const Outcome outcome = mend(bad, samples);
         if (is_stuck && outcome != Outcome::not_now) patience.note(outcome == Outcome::done);
         if (outcome == Outcome::failed) left_.push_back(bad);
-        if (outcome == Outcome::left_zone) outside_.push_back(bad);
+        if (outcome == Outcome::for_the_whole) outside_.push_back(bad);
     }
     return true;
 }
@@ -197,12 +197,13 @@ Mending::Outcome Mending::mend(const Bad& bad, unsigned samples) {
             touch(mover_.changed());
             return Outcome::done;
         }
-        if (mesh_.triangulation().left_zone()) return Outcome::left_zone;
+        if (mesh_.triangulation().left_zone()) return Outcome::for_the_whole;
         if (!t.valid()) return Outcome::done;
         tried = {clock_, pass_, tried.failures + 1};
     }
     Stuck& stuck = stuck_[key];
-    if (last_resort && stuck.last_resorts < kTriesInAll) {
+    if ((last_resort || leaves_last_resort) && stuck.last_resorts < kTriesInAll) {
+        if (leaves_last_resort) return Outcome::for_the_whole;
         ++stuck.last_resorts;
         if (last_resort(bad, order)) return Outcome::done;
     }

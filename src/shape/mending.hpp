@@ -40,6 +40,8 @@ public:
     std::function<bool(TetId)> is_mostly_stuck{};
     /// What to try when no move did. @return whether anything changed. Empty: nothing.
     std::function<bool(const Bad& bad, const TetStore::Corners& freest_first)> last_resort{};
+    /// Of a view: the whole has a last resort for what no move mended, so that waits for it.
+    bool leaves_last_resort = false;
     /// Asked for each tetrahedron of a pass, with the number of those that wait; false ends the pass.
     using MayGoOn = std::function<bool(std::size_t waiting)>;
 
@@ -101,7 +103,7 @@ private:
     private:
         std::uint64_t mended_ = 0, failed_ = 0, refused_ = 0;
     };
-    enum class Outcome : std::uint8_t { done, not_now, failed, left_zone };
+    enum class Outcome : std::uint8_t { done, not_now, failed, for_the_whole };
 
     Outcome mend(const Bad& bad, unsigned samples);
     [[nodiscard]] Stuck* find_stuck(std::uint64_t key);
@@ -120,7 +122,7 @@ private:
     std::unordered_map<std::uint64_t, Stuck> stuck_;   // by corners; each is looked up, in no order
     const std::unordered_map<std::uint64_t, Stuck>* known_ = nullptr;  // of a view: what the whole knew
     std::vector<Bad> heap_, left_;
-    std::vector<Bad> outside_;  // of a view: left its zone
+    std::vector<Bad> outside_;  // of a view: left its zone, or is for the whole
 };
 
 }  // namespace wellmesh

@@ -86,6 +86,7 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
 
 /// Takes superfluous vertices out. What excuses a tetrahedron beside an acute angle may have been one of them.
 RunGuard::Verdict ShapeImprover::thin_out(std::size_t first_new, std::size_t enough) {
+    if (thinning_.is_pointless(enough)) return RunGuard::Verdict::go_on;
     // Memory is short: a savepoint keeps what changes from here on.
     mending_.forget_tries();
     std::vector<std::uint32_t>().swap(marked_);

@@ -12,6 +12,8 @@ constexpr double kNegligible = 0.005;  // part of the vertices that may be too m
 constexpr std::size_t kStride = 16;  // from one vertex to the next one tried: the first ones tell how it would be everywhere
 constexpr double kWorthGoingOn = 0.02;      // of the vertices must go in a sweep for another to be tried
 
+std::size_t tolerated(std::size_t enough) { return enough + static_cast<std::size_t>(kNegligible * static_cast<double>(enough)); }
+
 }  // namespace
 
 RunGuard::Verdict Thinning::sweep(std::size_t first, std::size_t enough, std::size_t trials) {
@@ -31,8 +33,10 @@ RunGuard::Verdict Thinning::sweep(std::size_t first, std::size_t enough, std::si
     return RunGuard::Verdict::go_on;
 }
 
+bool Thinning::is_pointless(std::size_t enough) const { return mesh_.vertex_count() <= tolerated(enough); }
+
 RunGuard::Verdict Thinning::run(std::size_t first_new, std::size_t enough) {
-    enough += static_cast<std::size_t>(kNegligible * static_cast<double>(enough));
+    enough = tolerated(enough);
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     std::size_t before = 0;
     do {

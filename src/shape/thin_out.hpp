@@ -16,7 +16,9 @@ class Thinning {
 public:
     Thinning(ConformingMesh& mesh, RunGuard& guard, Chains& chains) : mesh_(mesh), guard_(guard), chains_(chains) {}
 
-    /// Takes out what can go of the vertices from slot `first_new` on, then of all as long as there are more than `enough`, but for half a per cent.
+    /// Is the mesh as good as thin already: are there no more than `enough` vertices, but for half a per cent?
+    [[nodiscard]] bool is_pointless(std::size_t enough) const;
+    /// Takes out what can go of the vertices from slot `first_new` on, then of all as long as there are too many in that sense.
     RunGuard::Verdict run(std::size_t first_new, std::size_t enough);
 
 private:

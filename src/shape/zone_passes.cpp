@@ -67,7 +67,7 @@ private:
     std::vector<std::unique_ptr<Member>> members_;
 };
 
-RunGuard::Verdict ZonePasses::mend(unsigned samples) {
+RunGuard::Verdict ZonePasses::mend(unsigned samples, bool leaves_last_resort) {
     // Moves change no number of vertices: whether there are too many does not depend on who asks first.
     RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), mending_.count());
     for (unsigned turn = 0; turn < Zones::kTurns && verdict == RunGuard::Verdict::go_on; ++turn) {
@@ -86,7 +86,10 @@ RunGuard::Verdict ZonePasses::mend(unsigned samples) {
             (inside ? team[zone].mending.waiting() : outside).push_back(b);
         }
         waiting = std::move(outside);
-        verdict = team.run([&](Team::Member& m, const Mending::MayGoOn& may_go_on) { m.mending.pass(samples, may_go_on); });
+        verdict = team.run([&](Team::Member& m, const Mending::MayGoOn& may_go_on) {
+            m.mending.leaves_last_resort = leaves_last_resort;
+            m.mending.pass(samples, may_go_on);
+        });
     }
     return verdict;
 }

@@ -23,8 +23,8 @@ public:
     ZonePasses(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, Workers& workers, const TetJudge& judge, VertexMover& mover, Mending& mending)
         : mesh_(mesh), boundary_(boundary), guard_(guard), workers_(workers), judge_(judge), mover_(mover), mending_(mending) {}
 
-    /// Takes what it can from the waiting ones of a pass that has begun.
-    RunGuard::Verdict mend(unsigned samples);
+    /// Takes what it can from the waiting ones of a pass that has begun, by moves alone. @param leaves_last_resort  what no move mended goes on waiting
+    RunGuard::Verdict mend(unsigned samples, bool leaves_last_resort);
     /// The same with vertices that are to be smoothed; those that are not done stay, in some order.
     RunGuard::Verdict smooth(std::vector<VertexId>& vertices, double floor);
 

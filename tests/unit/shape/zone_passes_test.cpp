@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 #include <stop_token>
 #include <vector>
@@ -71,6 +73,37 @@ TEST(ZonePasses, TheSameMeshForAnyNumberOfThreads) {
 TEST(ZonePasses, TheSameMeshBesideAnAcuteAngle) {
     const Plc plc = wedge(40);
     same_for_any_threads([&](unsigned threads) { return improved(plc, 25, threads); }, {1, 2});
+}
+
+/// Moves in zones before the last resorts of the whole: nothing is given up before it had those, and each is tried for once.
+TEST(ZonePasses, WhatNoMoveMendsWaitsForTheLastResort) {
+    Refined r;
+    StagedMesh& staged = *r.staged;
+    Workers workers(2);
+    TetJudge judge(staged.mesh, r.refiner->sizes(), 2);
+    judge.set_goal(std::cos(45 * std::numbers::pi / 180), TetJudge::kNoAspect);  // more than moves reach
+    VertexMover mover(staged.mesh, staged.boundary, judge, 0);
+    Mending mending(staged.mesh, judge, mover);
+    mending.badness = [&](TetId t) { return judge.shape_badness(t); };
+    ZonePasses zones(staged.mesh, staged.boundary, staged.guard, workers, judge, mover, mending);
+    mending.collect(workers);
+    const std::size_t bad = mending.count();
+    mending.begin_pass();
+    EXPECT_EQ(zones.mend(2, true), RunGuard::Verdict::go_on);
+    EXPECT_GT(mover.statistics().moves, 100U);
+    EXPECT_TRUE(mending.left().empty());
+    EXPECT_GT(mending.waiting().size(), bad / 10);
+    std::size_t resorts = 0;
+    mending.last_resort = [&](const Bad&, const TetStore::Corners&) { return ++resorts == 0; };
+    EXPECT_TRUE(mending.pass(2, [](std::size_t) { return true; }));
+    mending.end_pass();
+    EXPECT_GT(resorts, bad / 10);
+    EXPECT_GE(resorts, mending.left().size());
+    mending.begin_pass();
+    mending.last_resort = {};
+    EXPECT_EQ(zones.mend(2, false), RunGuard::Verdict::go_on);
+    EXPECT_FALSE(mending.left().empty());
+    EXPECT_EQ(staged.problem(true), "");
 }
 
 /// All vertices inside of a mesh, smoothed in zones.
