@@ -13,18 +13,18 @@ constexpr Halvings kThorough{6, 8};
 }  // namespace
 
 double vertices_for_gaps(const ValidPlc& plc, double enough, Workers& workers) {
-    constexpr std::size_t kGrain = 32, kAtOnce = 8;
+    constexpr std::size_t kGrain = 32, kAtFirst = 8;
     const LocalFeatureSize size(plc);
     std::vector<double> at_vertex(plc.vertices.size());
     workers.for_ranges(at_vertex.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) at_vertex[v] = size(plc.vertices[v]);
     });
     double sum = 0;
-    // Of some at once; there may be a lot less to look at than all.
+    // Of some at once, and of twice as many then: there may be a lot less to look at than all.
     const auto add = [&](std::size_t count, const auto& vertices_of) {
         std::vector<double> vertices;
-        for (std::size_t first = 0; first < count && sum <= enough; first += kAtOnce) {
-            vertices.assign(std::min(kAtOnce, count - first), 0);
+        for (std::size_t first = 0, at_once = kAtFirst; first < count && sum <= enough; first += vertices.size(), at_once *= 2) {
+            vertices.assign(std::min(at_once, count - first), 0);
             workers.for_each(vertices.size(), [&](std::size_t i) { vertices[i] = vertices_of(first + i); });
             for (const double v : vertices) sum += v;
         }
@@ -35,9 +35,8 @@ double vertices_for_gaps(const ValidPlc& plc, double enough, Workers& workers) {
         const auto& t = triangles[i];
         const std::array<Vec3, 3> corners{plc.vertices[t[0].index()], plc.vertices[t[1].index()], plc.vertices[t[2].index()]};
         double vertices = 0;
-        sample_gap(size, corners, {at_vertex[t[0].index()], at_vertex[t[1].index()], at_vertex[t[2].index()]}, [&](double area, double width) {
-            if (area > kSlender * kSlender * width * width) vertices += vertices_beside_facet(area, width);
-        }, kThorough);
+        sample_gap(size, corners, {at_vertex[t[0].index()], at_vertex[t[1].index()], at_vertex[t[2].index()]},
+                   [&](double area, double width) { vertices += vertices_beside_facet(area, width); }, kThorough, kSlender);
         return vertices;
     });
     add(plc.segments.size(), [&](std::size_t i) {

@@ -22,6 +22,9 @@ inline constexpr double kSlender = 8;
 inline double vertices_beside_facet(double area, double width) { return 0.5 * area / (width * width); }
 inline double vertices_beside_segment(double length, double width) { return 3 * length / width; }
 
+/// From the corners of an equilateral triangle to its centre, over its side, and a little more: no point of any triangle is so many longest sides from all corners.
+inline constexpr double kFarthestOverSide = 0.5774;
+
 /// How often a triangle is halved: at least, unless the gap is wider than the piece, and at most.
 struct Halvings {
     unsigned least = 0, most = 6;
@@ -40,24 +43,30 @@ inline double width_of_like_triangle(std::array<double, 3> widths) {
 
 /// Halves a triangle's longest side until the gap is about as wide everywhere, or wider than the piece.
 /// @param widths  local feature sizes at its corners
+/// @param slender  of pieces no larger than the square of so many widths nothing is said, and none are looked for where there can be no others
 /// @param emit  (area, width) of a piece
 template <class Emit>
-void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 3>& corners, const std::array<double, 3>& widths, Emit&& emit,
-                Halvings halvings = {}) {
+void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 3>& corners, const std::array<double, 3>& widths, Emit&& emit, Halvings halvings = {},
+                double slender = 0) {
     const auto [least, most] = std::minmax_element(widths.begin(), widths.end());
+    const double area = 0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0]));
     std::array<double, 3> squares{};  // of the sides opposite each corner
     for (std::size_t i = 0; i < 3; ++i) squares[i] = squared_distance(corners[(i + 1) % 3], corners[(i + 2) % 3]);
     const auto k = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
+    // All of a triangle is within that of some corner, and within its longest side of each; local feature size falls no faster than distance grows.
+    const double longest = std::sqrt(squares[k]), narrowest = std::max(*least - kFarthestOverSide * longest, *most - longest);
+    if (narrowest > 0 && !(area > slender * slender * narrowest * narrowest)) return;
     if (halvings.most == 0 || !(*most > 2 * *least || halvings.least > 0) || !(squares[k] > *least * *least)) {
-        emit(0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0])), width_of_like_triangle(widths));
+        const double width = width_of_like_triangle(widths);
+        if (area > slender * slender * width * width) emit(area, width);
         return;
     }
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
     const Vec3 middle = 0.5 * (corners[i] + corners[j]);
     const double width = size(middle);
     const Halvings fewer{halvings.least > 0 ? halvings.least - 1 : 0, halvings.most - 1};
-    sample_gap(size, {corners[k], corners[i], middle}, {widths[k], widths[i], width}, emit, fewer);
-    sample_gap(size, {corners[k], middle, corners[j]}, {widths[k], width, widths[j]}, emit, fewer);
+    sample_gap(size, {corners[k], corners[i], middle}, {widths[k], widths[i], width}, emit, fewer, slender);
+    sample_gap(size, {corners[k], middle, corners[j]}, {widths[k], width, widths[j]}, emit, fewer, slender);
 }
 
 /// The same for a segment. @param widths  at its ends  @param emit  (length, width) of a piece

@@ -8,7 +8,10 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
+#include "core/rng.hpp"
 #include "support/gap_plcs.hpp"
 #include "support/synthetic_plcs.hpp"
 
@@ -118,6 +121,35 @@ TEST(SampleGap, CoversTheTriangleByPiecesOfAboutOneWidth) {
     std::size_t count = 0;
     sample_gap(size, corners, {0.05, 0.05, 0.05}, [&](double, double) { ++count; }, Halvings{4, 12});
     EXPECT_GE(count, 16U);  // at least so often though its corners are alike
+}
+
+/// Pieces that are not slender enough to be told of are not looked for, and no others are missed.
+TEST(SampleGap, LooksForSlenderPiecesOnly) {
+    const ValidPlc plc = validate(plate_above_floor(0.5, 0.001, 0.1));
+    const LocalFeatureSize size(plc);
+    const auto random = [](std::uint64_t k) { return unit_double(mix64(11, k)); };
+    std::size_t told = 0, left_out = 0;
+    for (std::uint64_t k = 0; k < 900; ++k) {
+        std::array<Vec3, 3> corners;
+        std::array<double, 3> widths{};
+        const double reach = std::pow(0.5, static_cast<double>(k % 6));
+        for (std::uint64_t i = 0; i < 3; ++i) {
+            corners[i] = {random(9 * k) + reach * (random(9 * k + i) - 0.5), 0.5 + reach * (random(1000 + 9 * k + i) - 0.5), 0.05 * random(2000 + 9 * k + i)};
+            widths[i] = size(corners[i]);
+        }
+        for (const double slender : {1.0, 3.0, 8.0}) {
+            std::vector<std::pair<double, double>> all, some;
+            sample_gap(size, corners, widths, [&](double area, double width) {
+                if (area > slender * slender * width * width) all.emplace_back(area, width);
+                else ++left_out;
+            }, Halvings{4, 8});
+            sample_gap(size, corners, widths, [&](double area, double width) { some.emplace_back(area, width); }, Halvings{4, 8}, slender);
+            EXPECT_EQ(some, all);
+            told += all.size();
+        }
+    }
+    EXPECT_GT(told, 1000U);
+    EXPECT_GT(left_out, 1000U);
 }
 
 }  // namespace
