@@ -30,6 +30,9 @@ struct CarriedWitness {
     std::uint8_t generation = 0;  ///< as in VertexInfo
 };
 
+/// Splits this near to the middle of a ball, in its radii, go to its sphere: the piece between would be short.
+inline constexpr double kSphereReach = 1.3;
+
 class AcuteGeometry {
 public:
     /// @param has_narrow_gaps  features that do not meet have to copy each other, too

@@ -18,8 +18,6 @@ constexpr double kNearestToEnd = 0.2;
 constexpr double kShift = 0.2;
 /// The centre nearer to the axis of a copy than this part of the radius.
 constexpr double kShortLever = 0.1;
-/// Splits this near to a ball, in its radii, go to its sphere: the piece between would be short.
-constexpr double kSphereReach = 1.3;
 /// An encroaching vertex's projection is a better place than the circumcentre if it keeps this part of the radius from the corners.
 constexpr double kProjectionClearance = 0.3;
 constexpr double kProjectionDepth = 0.95;  // of the radius: what encroaches by rounding only may project to anywhere on the rim

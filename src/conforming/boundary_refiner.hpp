@@ -147,6 +147,7 @@ private:
     template <class Segments, class Faces>
     void list_encroached(TetId t, Segments& segments, Faces& faces) const;
     void recover_segments();
+    [[nodiscard]] TetFace sole_triangle(FacetId f);
     bool recover_facet(FacetId f);
     void recover_facets(std::vector<FacetId> todo);
     void repair_broken();

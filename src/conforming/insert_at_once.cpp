@@ -3,53 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
 #include "core/check.hpp"
-#include "core/edge_key.hpp"
-#include "core/rng.hpp"
+#include "core/corner_table.hpp"
 
 namespace wellmesh {
 namespace {
 
 constexpr std::size_t kSlotsAPiece = std::size_t{1} << 14;
-
-/// Finds the number of a face or an edge by its vertices. Built once; searched from any thread.
-template <std::size_t kCorners>
-class CornerTable {
-public:
-    using Key = std::array<VertexId, kCorners>;
-
-    template <class KeyOf>
-    CornerTable(std::size_t count, const KeyOf& key_of) : keys_(count), slots_(std::bit_ceil(2 * count + 2), kNone) {
-        for (std::size_t i = 0; i < count; ++i) {
-            keys_[i] = key_of(i);
-            std::sort(keys_[i].begin(), keys_[i].end());
-            std::size_t s = slot_of(keys_[i]);
-            while (slots_[s] != kNone) s = (s + 1) & (slots_.size() - 1);
-            slots_[s] = static_cast<std::uint32_t>(i);
-        }
-    }
-    [[nodiscard]] std::uint32_t find(Key key) const {
-        std::sort(key.begin(), key.end());
-        for (std::size_t s = slot_of(key);; s = (s + 1) & (slots_.size() - 1))
-            if (slots_[s] == kNone || keys_[slots_[s]] == key) return slots_[s];
-    }
-    static constexpr std::uint32_t kNone = 0xffffffffU;
-
-private:
-    [[nodiscard]] std::size_t slot_of(const Key& key) const {
-        std::uint64_t h = mix64(key[0].value(), key[1].value());
-        if constexpr (kCorners == 3) h = mix64(h, key[2].value());
-        return h & (slots_.size() - 1);
-    }
-    std::vector<Key> keys_;
-    std::vector<std::uint32_t> slots_;
-};
 
 }  // namespace
 
@@ -80,17 +45,19 @@ void ConformingMesh::insert_at_once(Workers& workers, std::span<const std::uint3
 
 void ConformingMesh::relabel(Workers& workers, std::span<const Subsegment> segments, std::span<const Subface> faces) {
     WELLMESH_CHECK(Stage::conform, frames_.empty() && records_.size() == 1);
-    const CornerTable<2> segment_at(segments.size(), [&](std::size_t i) { return std::array{segments[i].a, segments[i].b}; });
-    const CornerTable<3> face_at(faces.size(), [&](std::size_t i) { return faces[i].corners; });
+    const CornerTable<2> segment_at(workers, segments.size(), [&](std::size_t i) { return std::array{segments[i].a, segments[i].b}; });
+    const CornerTable<3> face_at(workers, faces.size(), [&](std::size_t i) { return faces[i].corners; });
     std::vector<std::uint8_t> has_segment(segments.size(), 0), has_face(faces.size(), 0);
     const auto mark = [](std::uint8_t& m) { std::atomic_ref<std::uint8_t>(m).store(1, std::memory_order_relaxed); };
     // Most tetrahedra have no face on the boundary: a byte a vertex tells.
     enum Place : std::uint8_t { kInside, kOnFacet, kOnSegment };
     std::vector<Place> place(info_.size());
-    for (std::size_t v = 0; v < info_.size(); ++v) {
-        const CarrierKind carrier = info_[v].carrier;
-        place[v] = carrier == CarrierKind::region ? kInside : carrier == CarrierKind::facet ? kOnFacet : kOnSegment;
-    }
+    workers.for_ranges(place.size(), kSlotsAPiece, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            const CarrierKind carrier = info_[v].carrier;
+            place[v] = carrier == CarrierKind::region ? kInside : carrier == CarrierKind::facet ? kOnFacet : kOnSegment;
+        }
+    });
     struct Labelled {
         TetId t;
         TetLabels labels;

@@ -188,7 +188,7 @@ std::vector<VertexId> ConformingMesh::insert_inside(Workers& workers, std::span<
 bool ConformingMesh::put_known_tets(Workers& workers, const KnownTets& known, std::span<const VertexId> fresh, const std::function<bool()>& goes_on) {
     WELLMESH_CHECK(Stage::refine, frames_.empty());
     KnownRegion region;
-    if (!tri_.find_region(known, region, goes_on)) return false;
+    if (!tri_.find_region(workers, known, region, goes_on)) return false;
     std::vector<CellId> cell_of;  // by group
     for (std::size_t i = 0; i < region.tets.size(); ++i) {
         const TetId t = region.tets[i];
@@ -204,7 +204,7 @@ bool ConformingMesh::put_known_tets(Workers& workers, const KnownTets& known, st
         std::vector<KnownTets::Tet> tets;
         if (!only_one) known.list(piece, tets);
         for (std::size_t first = known.first(piece), n = first; n < known.first(piece + 1); ++n) {
-            const std::size_t t = region.tets[n].index();
+            const std::size_t t = region.tet(n).index();
             cell_[t] = cell_of[only_one ? 0 : tets[n - first].group];
             record_[t] = 0;
         }

@@ -30,6 +30,13 @@ void BoundaryRefiner::recover_segments() {
     drain_segments();
 }
 
+/// The face that is all of a facet, or an invalid one: of a surface of triangles most are such.
+TetFace BoundaryRefiner::sole_triangle(FacetId f) {
+    const ValidFacet& facet = mesh_.plc().facets[f.index()];
+    if (facet.triangles.size() != 1 || facet.vertices.size() != 3 || !mesh_.steiner_vertices_of(f).empty()) return {};
+    return mesh_.triangulation().find_face(facet.vertices[0], facet.vertices[1], facet.vertices[2]);
+}
+
 /// @return false if points had to be inserted (which may have broken other facets): call again.
 bool BoundaryRefiner::recover_facet(FacetId f) {
     for (unsigned round = 0;; ++round) {
@@ -39,6 +46,10 @@ bool BoundaryRefiner::recover_facet(FacetId f) {
                             {{EntityKind::facet, mesh_.plc().facets[f.index()].source_facet + 1, mesh_.plc().facets[f.index()].origin}});
         // Time and memory only: most facets need no vertex.
         guard_.require(0, 0, 0, [&] { return ElementRef{EntityKind::facet, mesh_.plc().facets[f.index()].source_facet + 1U, mesh_.plc().facets[f.index()].origin}; });
+        if (const TetFace face = sole_triangle(f); face.valid()) {
+            mesh_.relabel_facet(f, {face});
+            return round == 0;
+        }
         FacetDelaunay flat(mesh_, f);
         const std::vector<FacetDelaunay::Missing> missing = flat.match_faces(mesh_);
         if (missing.empty()) {

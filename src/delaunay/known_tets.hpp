@@ -46,6 +46,16 @@ struct KnownRegion {
     std::vector<TetId> tets;
     std::vector<std::uint32_t> group;  ///< of each of them: one that its known ones have
     std::vector<TetFace> outside;      ///< behind each rim face
+
+    // --- once it is replaced
+    TetStore::Slots more{};  ///< where there are more known ones than there were others
+    void sort(std::size_t slots);
+    /// Where known tetrahedron n is.
+    [[nodiscard]] TetId tet(std::size_t n) const {
+        if (n < tets.size()) return tets[n];
+        n -= tets.size();
+        return n < more.count ? TetId{more.first + n} : more.recycled[more.recycled.size() - 1 - (n - more.count)];
+    }
 };
 
 }  // namespace wellmesh

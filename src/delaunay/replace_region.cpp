@@ -2,49 +2,33 @@
 // Known tetrahedra take the place of what fills their region. Their rim must be there already: the triangulation of some of the points has every
 // Delaunay tetrahedron of all of them that has no other corners, and nothing but these lies outside of the rim.
 #include <algorithm>
-#include <bit>
 
-#include "core/rng.hpp"
+#include "core/corner_table.hpp"
 #include "delaunay/known_tets.hpp"
 #include "delaunay/triangulation.hpp"
 
 namespace wellmesh {
 namespace {
 
-/// Numbers of faces by their corners.
-class FaceTable {
+/// The faces of the rim by their corners.
+class Rim {
 public:
-    FaceTable(std::span<const KnownTets::RimFace> faces, std::span<const char> known)
-        : faces_(faces), role_(known.begin(), known.end()), slots_(std::bit_ceil(2 * faces.size() + 1), kNone) {
-        for (std::size_t r = 0; r < faces.size(); ++r) {
-            for (const VertexId v : faces[r].corners) role_[v.index()] = kOnRim;
-            std::size_t at = place_of(faces[r].corners);
-            while (slots_[at] != kNone) at = next(at);
-            slots_[at] = static_cast<std::uint32_t>(r);
-        }
+    Rim(Workers& workers, const KnownTets& known)
+        : role_(known.has_vertex().begin(), known.has_vertex().end()), table_(workers, known.rim().size(), [&](std::size_t r) { return known.rim()[r].corners; }) {
+        for (const KnownTets::RimFace& face : known.rim())
+            for (const VertexId v : face.corners) role_[v.index()] = kOnRim;
     }
-    static constexpr std::uint32_t kNone = 0xffffffffU;
+    static constexpr std::uint32_t kNone = CornerTable<3>::kNone;
     /// Of the vertices of known tetrahedra.
     [[nodiscard]] bool is_known(VertexId v) const { return role_[v.index()] != 0; }
-    [[nodiscard]] bool is_on_rim(VertexId v) const { return role_[v.index()] == kOnRim; }
     [[nodiscard]] std::uint32_t find(const std::array<VertexId, 3>& corners) const {
-        if (!is_on_rim(corners[0]) || !is_on_rim(corners[1]) || !is_on_rim(corners[2])) return kNone;
-        for (std::size_t at = place_of(corners); slots_[at] != kNone; at = next(at))
-            if (std::is_permutation(corners.begin(), corners.end(), faces_[slots_[at]].corners.begin())) return slots_[at];
-        return kNone;
+        return std::all_of(corners.begin(), corners.end(), [&](VertexId v) { return role_[v.index()] == kOnRim; }) ? table_.find(corners) : kNone;
     }
 
 private:
-    [[nodiscard]] std::size_t place_of(std::array<VertexId, 3> c) const {
-        std::sort(c.begin(), c.end());
-        return mix64(std::uint64_t{c[0].value()} << 32 | c[1].value(), c[2].value()) & (slots_.size() - 1);
-    }
-    [[nodiscard]] std::size_t next(std::size_t at) const { return (at + 1) & (slots_.size() - 1); }
-
-    std::span<const KnownTets::RimFace> faces_;
     static constexpr char kOnRim = 2;
     std::vector<char> role_;  // by vertex
-    std::vector<std::uint32_t> slots_;
+    CornerTable<3> table_;
 };
 
 bool same_side(const std::array<VertexId, 3>& a, const std::array<VertexId, 3>& b) {
@@ -54,10 +38,10 @@ bool same_side(const std::array<VertexId, 3>& a, const std::array<VertexId, 3>& 
 
 }  // namespace
 
-bool Triangulation::find_region(const KnownTets& known, KnownRegion& region, const std::function<bool()>& goes_on) {
+bool Triangulation::find_region(Workers& workers, const KnownTets& known, KnownRegion& region, const std::function<bool()>& goes_on) {
     constexpr std::size_t kBetweenQuestions = 4096;
     const std::span<const KnownTets::RimFace> rim = known.rim();
-    const FaceTable table(rim, known.has_vertex());
+    const Rim table(workers, known);
     region.tets.clear();
     region.group.clear();
     region.outside.assign(rim.size(), TetFace{});
@@ -87,7 +71,7 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region, con
             for (unsigned f = 0; f < 4; ++f) {
                 const TetFace beyond = tets_.across(t, f);
                 const std::array<VertexId, 3> corners = tets_.face_corners(TetFace{t, f});
-                if (const std::uint32_t met = table.find(corners); met != FaceTable::kNone) {
+                if (const std::uint32_t met = table.find(corners); met != Rim::kNone) {
                     if (!same_side(corners, rim[met].corners)) return false;
                     region.outside[met] = beyond;
                 } else if (is_within[beyond.tet().index()] == 0) {
@@ -99,16 +83,24 @@ bool Triangulation::find_region(const KnownTets& known, KnownRegion& region, con
     return true;
 }
 
+/// By marks, as they are part of a range that is not much larger.
+void KnownRegion::sort(std::size_t slots) {
+    std::vector<char> is_one(slots, 0);
+    for (const TetId t : tets) is_one[t.index()] = 1;
+    tets.clear();
+    for (std::size_t i = 0; i < slots; ++i)
+        if (is_one[i] != 0) tets.emplace_back(i);
+}
+
 void Triangulation::replace_region(Workers& workers, const KnownTets& known, KnownRegion& region) {
     const std::size_t count = known.count();
     while (region.tets.size() > count) {
         tets_.release(region.tets.back());
         region.tets.pop_back();
     }
-    std::sort(region.tets.begin(), region.tets.end());
-    std::vector<TetId> more = tets_.take_slots(count - region.tets.size()).list();
-    region.tets.insert(region.tets.end(), more.rbegin(), more.rend());
-    const auto face_of = [&](std::uint32_t packed) { return TetFace{region.tets[packed >> 2], packed & 3U}; };
+    region.sort(tets_.slots());
+    region.more = tets_.take_slots(count - region.tets.size());
+    const auto face_of = [&](std::uint32_t packed) { return TetFace{region.tet(packed >> 2), packed & 3U}; };
     workers.for_each(known.pieces(), [&](std::size_t piece) {
         std::vector<KnownTets::Tet> tets;
         known.list(piece, tets);
@@ -117,7 +109,7 @@ void Triangulation::replace_region(Workers& workers, const KnownTets& known, Kno
             std::array<TetFace, 4> across;
             for (unsigned f = 0; f < 4; ++f)
                 across[f] = (tet.across[f] & KnownTets::kRimBit) != 0 ? region.outside[tet.across[f] & ~KnownTets::kRimBit] : face_of(tet.across[f]);
-            const TetId t = region.tets[n++];
+            const TetId t = region.tet(n++);
             tets_.set(t, tet.corners, across);
             for (unsigned k = 0; k < 4; ++k)
                 if ((tet.homes >> k & 1U) != 0) vertices_[tet.corners[k].index()].tet = t;

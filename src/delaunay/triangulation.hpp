@@ -169,8 +169,8 @@ public:
     // --- known tetrahedra instead of those that are there (replace_region.cpp)
     /// What lies within the rim. @param goes_on  asked now and then
     /// @return false: the rim is not all there, or encloses a vertex that none of the known ones has, or `goes_on` said no; nothing has changed in any case
-    bool find_region(const KnownTets& known, KnownRegion& region, const std::function<bool()>& goes_on);
-    /// Known tetrahedron n becomes region.tets[n]. @param region  as find_region() left it, and nothing has changed since
+    bool find_region(Workers& workers, const KnownTets& known, KnownRegion& region, const std::function<bool()>& goes_on);
+    /// Known tetrahedron n becomes region.tet(n). @param region  as find_region() left it, and nothing has changed since
     void replace_region(Workers& workers, const KnownTets& known, KnownRegion& region);
 
     // --- several workers at once (insert_in_zones.cpp)

@@ -4,11 +4,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <span>
+#include <tuple>
 #include <utility>
 
+#include "core/edge_key.hpp"
 #include "core/huge_pages.hpp"
 #include "core/resident_memory.hpp"
+#include "core/sorting.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/spatial_order.hpp"
 
@@ -171,7 +176,7 @@ TetMesh extract_mesh(ConformingMesh&& mesh, Workers& workers, const std::functio
         edges.insert(edges.end(), l.edges.begin(), l.edges.end());
     }
     listed.clear();
-    std::sort(edges.begin(), edges.end());
+    sort_on(workers, std::span(edges), std::less<>());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     out.subfaces.reserve(faces.size());
     out.subface_facets.reserve(faces.size());
@@ -201,22 +206,25 @@ TetMesh extract_mesh(ConformingMesh&& mesh, Workers& workers, const std::functio
 
 double largest_bend_rad(const TetMesh& mesh) {
     struct Side {
-        std::array<std::uint32_t, 2> edge{};
-        std::int32_t facet = 0;
+        std::uint64_t edge = 0;
         std::uint32_t apex = 0;
+        std::int32_t facet = 0;
     };
     std::vector<Side> sides;
+    sides.reserve(3 * mesh.subfaces.size());
     for (std::size_t f = 0; f < mesh.subfaces.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = mesh.subfaces[f][(k + 1) % 3], b = mesh.subfaces[f][(k + 2) % 3];
             const std::array<std::uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
-            if (!std::binary_search(mesh.subsegments.begin(), mesh.subsegments.end(), edge)) sides.push_back({edge, mesh.subface_facets[f], mesh.subfaces[f][k]});
+            if (!std::binary_search(mesh.subsegments.begin(), mesh.subsegments.end(), edge))
+                sides.push_back({edge_key(VertexId{edge[0]}, VertexId{edge[1]}), mesh.subfaces[f][k], mesh.subface_facets[f]});
         }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge != b.edge ? a.edge < b.edge : a.apex < b.apex; });
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return std::tie(a.edge, a.apex) < std::tie(b.edge, b.apex); });
     double largest = 0;
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
         if (sides[i].edge != sides[i + 1].edge || sides[i].facet != sides[i + 1].facet) continue;
-        const Vec3 &a = mesh.vertices[sides[i].edge[0]], &b = mesh.vertices[sides[i].edge[1]];
+        const auto [first, second] = edge_ends(sides[i].edge);
+        const Vec3 &a = mesh.vertices[first.index()], &b = mesh.vertices[second.index()];
         const Vec3 m = cross(b - a, mesh.vertices[sides[i].apex] - a), n = cross(mesh.vertices[sides[i + 1].apex] - a, b - a);
         largest = std::max(largest, std::atan2(norm(cross(m, n)), dot(m, n)));
     }

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "core/edge_key.hpp"
 #include "core/infinity.hpp"
 #include "core/rng.hpp"
+#include "core/sorting.hpp"
 #include "core/vec3_math.hpp"
 #include "refinement/planar_refiner.hpp"
 
@@ -25,8 +27,6 @@ constexpr std::size_t kTetsAPiece = std::size_t{1} << 14;
 constexpr double kWholeOverRadius = 1.8, kPieceOverRadius = 1.1;
 /// Of a piece's length or a circumradius: takes exact symmetry away.
 constexpr double kJitter = 0.05;
-/// Points that would be nearer than so many radii to the middle of a ball are put on its sphere.
-constexpr double kSphereReach = 1.3;
 /// Of a subsegment: no piece is shorter.
 constexpr double kLeastPart = 1e-6;
 constexpr double kMostPieces = 1e6;
@@ -96,11 +96,10 @@ private:
     bool sample(FacetId f, Found& found, PlanarRefiner& plane) const;
     void collect();
     [[nodiscard]] double radius_in(FacetId f, const Vec3& p) const;
-    [[nodiscard]] Edge* find(std::uint64_t key) {
+    [[nodiscard]] const Edge* find(std::uint64_t key) const {
         const auto at = std::lower_bound(edges_.begin(), edges_.end(), key, [](const Edge& e, std::uint64_t k) { return e.key < k; });
         return at != edges_.end() && at->key == key ? &*at : nullptr;
     }
-    [[nodiscard]] const Edge* find(std::uint64_t key) const { return const_cast<BoundarySampler*>(this)->find(key); }
 
     const ConformingMesh& mesh_;
     const AcuteGeometry& acute_;
@@ -143,7 +142,7 @@ void BoundarySampler::list_boundary() {
         edges_.insert(edges_.end(), l.edges.begin(), l.edges.end());
         faces_.insert(faces_.end(), l.faces.begin(), l.faces.end());
     }
-    std::sort(edges_.begin(), edges_.end(), [](const Edge& x, const Edge& y) { return std::tie(x.key, x.radius) < std::tie(y.key, y.radius); });
+    sort_on(workers_, std::span(edges_), [](const Edge& x, const Edge& y) { return std::tie(x.key, x.radius) < std::tie(y.key, y.radius); });
     edges_.erase(std::unique(edges_.begin(), edges_.end(), [](const Edge& x, const Edge& y) { return x.key == y.key; }), edges_.end());
     std::stable_sort(faces_.begin(), faces_.end(), [](const Subface& x, const Subface& y) { return x.facet < y.facet; });
 }

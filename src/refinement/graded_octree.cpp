@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "core/huge_pages.hpp"
+#include "core/sorting.hpp"
 
 namespace wellmesh {
 
@@ -182,7 +184,7 @@ std::vector<LatticePoint> GradedOctree::lattice(Workers& workers, LatticeLeaves&
     workers.for_each(pieces.size(), [&](std::size_t p) {
         std::copy(pieces[p].corners.begin(), pieces[p].corners.end(), corners.begin() + static_cast<std::ptrdiff_t>(pieces[p].first_corner));
     });
-    std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.at != b.at ? a.at < b.at : a.depth > b.depth; });
+    sort_on(workers, std::span(corners), [](const Corner& a, const Corner& b) { return a.at != b.at ? a.at < b.at : a.depth > b.depth; });
     std::size_t kept = 0;
     for (const Corner& c : corners) {
         if (kept == 0 || corners[kept - 1].at != c.at) corners[kept++] = c;

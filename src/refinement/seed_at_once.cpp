@@ -25,6 +25,7 @@ constexpr double kMostMore = 0.07;
 constexpr double kNoTrouble = 40;
 /// Vertices beside sharper ones, over all of the boundary: copies need their order, and refinement pays for what goes without.
 constexpr double kMostAcute = 0.02;
+constexpr std::size_t kFacesAPiece = std::size_t{1} << 12;
 
 }  // namespace
 
@@ -43,7 +44,8 @@ bool LatticeSeeder::seed_at_once(double base) {
     std::optional<ConformingMesh> before(mesh_);
     const std::vector<double> balls = boundary_.acute().balls();
     number_points(*sample);
-    std::optional<Lattice> lattice = find_lattice(base, faces_of(*sample));
+    std::vector<Face> faces = faces_of(*sample);
+    std::optional<Lattice> lattice = find_lattice(base, faces);
     if (!lattice) return true;
     std::vector<Seed> seeds = seeds_of(lattice->points);
     std::vector<LatticePoint>().swap(lattice->points);
@@ -53,7 +55,7 @@ bool LatticeSeeder::seed_at_once(double base) {
     {
         std::vector<Subsegment> pieces = sample->segments;
         for (const VertexId v : mesh_.plc().isolated_vertices) pieces.push_back({v, v, SegmentId{}});
-        const Boundary boundary = find_boundary(faces_of(*sample), pieces);
+        const Boundary boundary = find_boundary(std::move(faces), pieces);
         in_bulk = find_clear(boundary, seeds, &cells);
         find_filling(*lattice, boundary, seeds, in_bulk, filling, &*sample);
     }
@@ -139,14 +141,17 @@ void LatticeSeeder::number_points(BoundarySample& sample) {
 
 /// As list_faces() does it of faces of the mesh.
 std::vector<LatticeSeeder::Face> LatticeSeeder::faces_of(const BoundarySample& sample) const {
-    std::vector<Face> out;
-    for (const Subface& s : sample.faces) {
-        const Vec3 middle = (1.0 / 3) * (mesh_.point(s.corners[0]) + mesh_.point(s.corners[1]) + mesh_.point(s.corners[2]));
-        double spacing = kInfinity;
-        for (const CellId c : mesh_.plc().facets[s.facet.index()].cells)
-            if (mesh_.is_filled(c)) spacing = std::min(spacing, spacing_at(middle, c));
-        if (spacing < kInfinity) out.push_back({s.corners, spacing});
-    }
+    std::vector<Face> out(sample.faces.size());
+    workers_.for_ranges(out.size(), kFacesAPiece, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Subface& s = sample.faces[i];
+            const Vec3 middle = (1.0 / 3) * (mesh_.point(s.corners[0]) + mesh_.point(s.corners[1]) + mesh_.point(s.corners[2]));
+            out[i] = {s.corners, kInfinity};
+            for (const CellId c : mesh_.plc().facets[s.facet.index()].cells)
+                if (mesh_.is_filled(c)) out[i].spacing = std::min(out[i].spacing, spacing_at(middle, c));
+        }
+    });
+    std::erase_if(out, [](const Face& f) { return f.spacing == kInfinity; });
     return out;
 }
 

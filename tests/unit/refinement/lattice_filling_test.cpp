@@ -109,7 +109,7 @@ TEST(LatticeFilling, MakesWhatInsertionMakes) {
             EXPECT_GT(std::count(scene.is_known.begin(), scene.is_known.end(), 1), 100);
             EXPECT_GT(scene.filling->count(), 1500U);
             KnownRegion region;
-            ASSERT_TRUE(part.find_region(*scene.filling, region, kGoesOn));
+            ASSERT_TRUE(part.find_region(scene.workers, *scene.filling, region, kGoesOn));
             EXPECT_GT(std::set<std::uint32_t>(region.group.begin(), region.group.end()).size(), 1U);
             part.replace_region(scene.workers, *scene.filling, region);
             EXPECT_EQ(check_adjacency(part), "");
@@ -136,18 +136,18 @@ TEST(LatticeFilling, RefusesARegionWithAnotherVertexOrWithoutItsRim) {
         ASSERT_TRUE(tri.find_conflict_cavity(tri.point(stranger), tri.tet_of(VertexId{scene.lattice}), cavity));
         tri.insert_vertex(stranger, cavity);
         scene.filling->know(scene.is_known, scene.vertex_of, scene.points.size() + 1);
-        EXPECT_FALSE(tri.find_region(*scene.filling, region, kGoesOn));
+        EXPECT_FALSE(tri.find_region(scene.workers, *scene.filling, region, kGoesOn));
         EXPECT_EQ(check_adjacency(tri), "");
     }
     scene.filling->know(scene.is_known, scene.vertex_of, scene.points.size());
     const VertexId on_rim = scene.filling->rim()[scene.filling->rim().size() / 2].corners[0];
     Triangulation tri = scene.triangulated([&](std::uint32_t v) { return is_shell(v) && v != on_rim.value(); });
-    EXPECT_FALSE(tri.find_region(*scene.filling, region, kGoesOn));
+    EXPECT_FALSE(tri.find_region(scene.workers, *scene.filling, region, kGoesOn));
     Triangulation complete = scene.triangulated(is_shell);
     const auto before = tets_of(complete);
-    EXPECT_FALSE(complete.find_region(*scene.filling, region, [] { return false; }));
+    EXPECT_FALSE(complete.find_region(scene.workers, *scene.filling, region, [] { return false; }));
     EXPECT_TRUE(tets_of(complete) == before);
-    EXPECT_TRUE(complete.find_region(*scene.filling, region, kGoesOn));
+    EXPECT_TRUE(complete.find_region(scene.workers, *scene.filling, region, kGoesOn));
 }
 
 }  // namespace
