@@ -212,6 +212,8 @@ public:
     [[nodiscard]] std::size_t savepoints() const { return frames_.size(); }  ///< (savepoint.hpp)
     /// Undoes insert or reinsert of v; `before` was saved from the cavity's tetrahedra. @param where as it was given then.
     void undo_insertion(VertexId v, const Placement& where, const Snapshot& before);
+    /// The same of a vertex that was not there before insert(), which was the last one to make any.
+    void undo_new_insertion(VertexId v, const Placement& where, const Snapshot& before);
     /// Undoes remove; `before` was saved from the star of v, which stands at its old point again.
     /// @param filling  live tetrahedra, some of them in the hole; empty: it is searched for
     void undo_removal(VertexId v, const Placement& where, const Snapshot& before, std::span<const TetId> filling = {});

@@ -87,6 +87,14 @@ void ConformingMesh::undo_insertion(VertexId v, const Placement& where, const Sn
     if (where.carrier == CarrierKind::segment) label_edge(where.a, where.b, SegmentId{where.carrier_id});
 }
 
+void ConformingMesh::undo_new_insertion(VertexId v, const Placement& where, const Snapshot& before) {
+    undo_insertion(v, where, before);
+    if (!tri_.is_view()) return;
+    WELLMESH_CHECK(Stage::shape, !added_.empty() && added_.back() == v);
+    added_.pop_back();
+    spare_vertices_.push_back(v);
+}
+
 void ConformingMesh::undo_removal(VertexId v, const Placement& where, const Snapshot& before, std::span<const TetId> filling) {
     // Whatever is in the hole is in conflict with v: then no walk is needed, which might leave a view's zone.
     const auto known = std::find_if(filling.begin(), filling.end(), [&](TetId t) { return tri_.in_conflict(t, point(v)); });

@@ -56,13 +56,13 @@ void ConformingMesh::join(std::vector<ConformingMesh>& views) {
     has_views_ = false;
     const std::size_t before = vertex_count_;
     for (ConformingMesh& view : views) {
-        WELLMESH_CHECK(Stage::shape, view.vertex_count_ == before + view.added_.size() && !view.has_broken() && view.forgotten_.empty());
+        WELLMESH_CHECK(Stage::shape, view.vertex_count_ <= before + view.added_.size() && !view.has_broken() && view.forgotten_.empty());
         tri_.join(view.tri_);
         old_tets_.join(view.old_tets_);
         old_vertices_.join(view.old_vertices_);
         old_records_.join(view.old_records_);
         free_records_.insert(free_records_.end(), view.free_records_.begin(), view.free_records_.end());
-        vertex_count_ += view.added_.size();
+        vertex_count_ = vertex_count_ + view.vertex_count_ - before;  // fewer where vertices were taken out
         for (const VertexId v : view.added_) note_carrier(v);
     }
     for (std::size_t z = views.size(); z-- > 0;) spare_vertices_.insert(spare_vertices_.end(), views[z].spare_vertices_.begin(), views[z].spare_vertices_.end());

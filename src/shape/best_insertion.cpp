@@ -30,6 +30,12 @@ Vec3 BestInsertion::candidate(const Placement& where, const Vec3& centre, double
     return flush_to_exact_range(centre + (kPatternReach * reach) * unit);
 }
 
+/// In a view: labels of the subsegment that is split are on the stars of its ends.
+bool BestInsertion::has_both_ends(const Placement& where) {
+    Triangulation& tri = mesh_.triangulation();
+    return !tri.is_view() || where.carrier != CarrierKind::segment || (tri.find_star(where.a, changed_) && tri.find_star(where.b, changed_));
+}
+
 VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit) {
     if (!std::isfinite(reach)) return {};
     Triangulation& tri = mesh_.triangulation();
@@ -53,7 +59,9 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
         found = true;
         if (best_cosine <= judge_.goal()) break;
     }
-    if (!found || !tri.find_conflict_cavity(best, t, cavity_)) return {};
+    if (!found) return {};
+    tri.forget_leaving();  // others would have
+    if (!has_both_ends(where) || !tri.find_conflict_cavity(best, t, cavity_) || !mesh_.may_insert(cavity_, where)) return {};
     mesh_.save(cavity_.tets, before_);
     const InsertionReason reason = where.carrier == CarrierKind::region ? InsertionReason::sliver : InsertionReason::boundary_by_sliver;
     const VertexId v = mesh_.insert(cavity_, where, {.reason = reason, .parent = *std::max_element(corners.begin(), corners.end())});
@@ -61,7 +69,7 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
     const bool fits = std::none_of(changed_.begin(), changed_.end(),
                                    [&](TetId n) { return boundary_.has_encroached(n) || (judge_.counts(n) && judge_.badness(n) > limit); });
     if (!fits) {
-        mesh_.undo_insertion(v, where, before_);
+        mesh_.undo_new_insertion(v, where, before_);
         return {};
     }
     ++count_;

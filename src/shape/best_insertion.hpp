@@ -22,10 +22,17 @@ public:
     VertexId insert(TetId t, double limit);
     [[nodiscard]] const std::vector<TetId>& changed() const { return changed_; }
     [[nodiscard]] std::uint64_t count() const { return count_; }
+    /// The same for a view of a zone, which it may leave: then nothing has changed.
+    [[nodiscard]] BestInsertion for_zone(ConformingMesh& view, BoundaryRefiner& boundary, const TetJudge& judge) const { return {view, boundary, judge, seed_}; }
+    void join(const BestInsertion& zone) {
+        count_ += zone.count_;
+        evaluations_ += zone.evaluations_;
+    }
     [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
 
 private:
     VertexId insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit);
+    [[nodiscard]] bool has_both_ends(const Placement& where);
     [[nodiscard]] Vec3 candidate(const Placement& where, const Vec3& centre, double reach, const Vec3& unit) const;
 
     ConformingMesh& mesh_;

@@ -86,31 +86,20 @@ void ShapeImprover::leave_forced_alone() {
     });
 }
 
-/// A vertex taken out, or the best insertion, where no move mends a tetrahedron.
-bool ShapeImprover::try_last_resort(const Bad& bad, const Corners& freest_first, bool removes) {
-    for (const VertexId v : freest_first)
-        if (removes && mover_.remove(v, judge_.goal())) {
-            mending_.touch(mover_.changed());
-            return true;
-        }
-    const TetId t = find_tet(mesh_, bad.corners, bad.last);
-    if (!t.valid() || !insertion_.insert(t, bad.badness - kWorthwhile).valid()) return false;
-    mending_.touch(insertion_.changed());
-    return true;
-}
-
 /// Tries to mend every bad tetrahedron once, and those that this makes.
 RunGuard::Verdict ShapeImprover::pass(unsigned samples, LastResort last_resort) {
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
     mending_.begin_pass();
-    // What comes and goes, and what an acute angle forces, is for the whole mesh.
-    if (!leaves_forced_ && !refiner_.gaps().any()) verdict = zones_.mend(samples, last_resort != LastResort::none);
-    if (verdict != RunGuard::Verdict::go_on) return verdict;
     mending_.last_resort = {};
     mending_.is_mostly_stuck = {};
     if (!leaves_forced_ && refiner_.may_excuse()) mending_.is_mostly_stuck = [this](TetId t) { return refiner_.excuses(t); };
+    // What an acute angle forces is for the whole mesh.
+    if (!leaves_forced_ && !refiner_.gaps().any()) verdict = zones_.mend(samples, last_resort);
+    if (verdict != RunGuard::Verdict::go_on) return verdict;
     if (last_resort != LastResort::none)
-        mending_.last_resort = [this, last_resort](const Bad& bad, const Corners& order) { return try_last_resort(bad, order, last_resort == LastResort::remove_or_insert); };
+        mending_.last_resort = [this, last_resort](const Bad& bad, const Corners& order) {
+            return try_last_resort(last_resort, mesh_, mover_, insertion_, mending_, judge_, bad, order);
+        };
     const auto may_go_on = [&](std::size_t waiting) {
         verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), waiting);
         return verdict == RunGuard::Verdict::go_on;

@@ -23,6 +23,7 @@
 #include "refinement/refine.hpp"
 #include "shape/best_insertion.hpp"
 #include "shape/chains.hpp"
+#include "shape/last_resort.hpp"
 #include "shape/mending.hpp"
 #include "shape/tet_judge.hpp"
 #include "shape/thin_out.hpp"
@@ -47,7 +48,7 @@ public:
           insertion_(mesh, boundary, judge_, seed),
           chains_(mesh, boundary, judge_, mover_, seed),
           mending_(mesh, judge_, mover_),
-          zones_(mesh, boundary, guard, workers, judge_, mover_, mending_),
+          zones_(mesh, boundary, guard, workers, judge_, mover_, insertion_, mending_),
           thinning_(mesh, guard, chains_) {
         mending_.goes_beyond_shape = refiner.may_excuse();
         mending_.badness = [this](TetId t) {
@@ -69,14 +70,12 @@ public:
 
 private:
     using Corners = TetStore::Corners;
-    enum class LastResort : std::uint8_t { none, insert, remove_or_insert };
 
     RunGuard::Verdict aim_at(double angle_deg, std::size_t vertices_at_start);
     RunGuard::Verdict try_each(LastResort last_resort);
     RunGuard::Verdict settle(LastResort last_resort);
     RunGuard::Verdict pass(unsigned samples, LastResort last_resort);
     RunGuard::Verdict passes(unsigned samples, unsigned most, LastResort last_resort);
-    bool try_last_resort(const Bad& bad, const Corners& freest_first, bool removes);
     RunGuard::Verdict smooth_around_bad(unsigned rings);
     RunGuard::Verdict rescue();
     RunGuard::Verdict thin_out(std::size_t first_new, std::size_t enough);

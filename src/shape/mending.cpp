@@ -17,7 +17,7 @@ constexpr unsigned kTriesInAll = 4;      // smoothings around a tetrahedron, and
 
 }  // namespace
 
-bool Mending::Patience::allows() { return failed_ < kFailures + kFailuresPerMended * mended_ || ++refused_ % kSample == 0; }
+bool Mending::Patience::allows() { return failed_ < kFailures / sharing_ + kFailuresPerMended * mended_ || ++refused_ % kSample == 0; }
 
 Mending Mending::for_zone(ConformingMesh& view, const TetJudge& judge, VertexMover& mover) {
     fit_arrays();
@@ -37,6 +37,8 @@ void Mending::join(Mending& zone) {
     left_.insert(left_.end(), zone.left_.begin(), zone.left_.end());
     heap_.insert(heap_.end(), zone.heap_.begin(), zone.heap_.end());
     heap_.insert(heap_.end(), zone.outside_.begin(), zone.outside_.end());
+    for (std::vector<Bad>* const some : {&left_, &heap_})
+        for (Bad& b : *some) b.is_mostly_stuck = false;
 }
 
 void Mending::fit_arrays() {
@@ -131,7 +133,7 @@ void Mending::begin_pass() {
 }
 
 bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
-    Patience patience;
+    Patience patience(sharing);
     std::make_heap(heap_.begin(), heap_.end(), IsLater{});
     while (!heap_.empty()) {
         std::pop_heap(heap_.begin(), heap_.end(), IsLater{});
@@ -150,7 +152,7 @@ bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
             heap_.push_back(bad);
             return false;
         }
-        const bool is_stuck = is_mostly_stuck && is_mostly_stuck(t);
+        const bool is_stuck = is_mostly_stuck ? is_mostly_stuck(t) : bad.is_mostly_stuck;
         if (is_stuck && !patience.allows()) {
             left_.push_back(bad);
             continue;
@@ -202,10 +204,10 @@ Mending::Outcome Mending::mend(const Bad& bad, unsigned samples) {
         tried = {clock_, pass_, tried.failures + 1};
     }
     Stuck& stuck = stuck_[key];
-    if ((last_resort || leaves_last_resort) && stuck.last_resorts < kTriesInAll) {
-        if (leaves_last_resort) return Outcome::for_the_whole;
-        ++stuck.last_resorts;
+    if (last_resort && stuck.last_resorts < kTriesInAll) {
         if (last_resort(bad, order)) return Outcome::done;
+        if (mesh_.triangulation().left_zone()) return Outcome::for_the_whole;
+        ++stuck.last_resorts;
     }
     stuck.when = clock_;
     stuck.pass = pass_;

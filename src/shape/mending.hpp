@@ -23,6 +23,7 @@ struct Bad {
     TetStore::Corners corners{};
     TetId last{};             // its id when it was listed
     std::uint32_t block = 0;  // of space
+    bool is_mostly_stuck = false;  // for a view, which can't ask
     friend bool operator<(const Bad& a, const Bad& b) { return a.badness != b.badness ? a.badness < b.badness : b.corners < a.corners; }
 };
 
@@ -36,12 +37,12 @@ public:
     bool goes_beyond_shape = false;
     /// Tetrahedra for another turn: a view can't judge them. Empty: there are none.
     std::function<bool(TetId)> must_wait{};
-    /// Tetrahedra that are mostly tried in vain, so that a pass tries no more of them than it mends in a certain proportion. Empty: there are none.
+    /// Tetrahedra that are mostly tried in vain, so that a pass tries no more of them than it mends in a certain proportion. Empty: those that are marked.
     std::function<bool(TetId)> is_mostly_stuck{};
-    /// What to try when no move did. @return whether anything changed. Empty: nothing.
+    /// Of a view: how many of them share in the patience that a pass has to begin with.
+    std::uint64_t sharing = 1;
+    /// What to try when no move did. @return whether anything changed; of a view: if not, it may also have left its zone. Empty: nothing.
     std::function<bool(const Bad& bad, const TetStore::Corners& freest_first)> last_resort{};
-    /// Of a view: the whole has a last resort for what no move mended, so that waits for it.
-    bool leaves_last_resort = false;
     /// Asked for each tetrahedron of a pass, with the number of those that wait; false ends the pass.
     using MayGoOn = std::function<bool(std::size_t waiting)>;
 
@@ -97,10 +98,12 @@ private:
     /// How many of those that are mostly stuck are still to be tried in a pass.
     class Patience {
     public:
+        explicit Patience(std::uint64_t sharing) : sharing_(sharing) {}
         bool allows();
         void note(bool was_mended) { ++(was_mended ? mended_ : failed_); }
 
     private:
+        std::uint64_t sharing_;
         std::uint64_t mended_ = 0, failed_ = 0, refused_ = 0;
     };
     enum class Outcome : std::uint8_t { done, not_now, failed, for_the_whole };
@@ -122,7 +125,7 @@ private:
     std::unordered_map<std::uint64_t, Stuck> stuck_;   // by corners; each is looked up, in no order
     const std::unordered_map<std::uint64_t, Stuck>* known_ = nullptr;  // of a view: what the whole knew
     std::vector<Bad> heap_, left_;
-    std::vector<Bad> outside_;  // of a view: left its zone, or is for the whole
+    std::vector<Bad> outside_;  // of a view: left its zone
 };
 
 }  // namespace wellmesh

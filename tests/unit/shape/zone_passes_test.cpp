@@ -75,35 +75,38 @@ TEST(ZonePasses, TheSameMeshBesideAnAcuteAngle) {
     same_for_any_threads([&](unsigned threads) { return improved(plc, 25, threads); }, {1, 2});
 }
 
-/// Moves in zones before the last resorts of the whole: nothing is given up before it had those, and each is tried for once.
-TEST(ZonePasses, WhatNoMoveMendsWaitsForTheLastResort) {
-    Refined r;
-    StagedMesh& staged = *r.staged;
-    Workers workers(2);
-    TetJudge judge(staged.mesh, r.refiner->sizes(), 2);
-    judge.set_goal(std::cos(45 * std::numbers::pi / 180), TetJudge::kNoAspect);  // more than moves reach
-    VertexMover mover(staged.mesh, staged.boundary, judge, 0);
-    Mending mending(staged.mesh, judge, mover);
-    mending.badness = [&](TetId t) { return judge.shape_badness(t); };
-    ZonePasses zones(staged.mesh, staged.boundary, staged.guard, workers, judge, mover, mending);
-    mending.collect(workers);
-    const std::size_t bad = mending.count();
-    mending.begin_pass();
-    EXPECT_EQ(zones.mend(2, true), RunGuard::Verdict::go_on);
-    EXPECT_GT(mover.statistics().moves, 100U);
-    EXPECT_TRUE(mending.left().empty());
-    EXPECT_GT(mending.waiting().size(), bad / 10);
-    std::size_t resorts = 0;
-    mending.last_resort = [&](const Bad&, const TetStore::Corners&) { return ++resorts == 0; };
-    EXPECT_TRUE(mending.pass(2, [](std::size_t) { return true; }));
-    mending.end_pass();
-    EXPECT_GT(resorts, bad / 10);
-    EXPECT_GE(resorts, mending.left().size());
-    mending.begin_pass();
-    mending.last_resort = {};
-    EXPECT_EQ(zones.mend(2, false), RunGuard::Verdict::go_on);
-    EXPECT_FALSE(mending.left().empty());
-    EXPECT_EQ(staged.problem(true), "");
+/// Moves and last resorts in zones: vertices come and go, counted right, and what left its zone waits for the whole.
+TEST(ZonePasses, VerticesComeAndGoInThem) {
+    same_for_any_threads([](unsigned threads) {
+        Refined r;
+        StagedMesh& staged = *r.staged;
+        const auto volumes = staged.cell_volumes();
+        Workers workers(threads);
+        TetJudge judge(staged.mesh, r.refiner->sizes(), 2);
+        judge.set_goal(std::cos(42 * std::numbers::pi / 180), TetJudge::kNoAspect);  // more than moves reach
+        VertexMover mover(staged.mesh, staged.boundary, judge, 0);
+        BestInsertion insertion(staged.mesh, staged.boundary, judge, 0);
+        Mending mending(staged.mesh, judge, mover);
+        mending.badness = [&](TetId t) { return judge.shape_badness(t); };
+        ZonePasses zones(staged.mesh, staged.boundary, staged.guard, workers, judge, mover, insertion, mending);
+        mending.collect(workers);
+        const std::size_t bad = mending.count(), before = staged.mesh.vertex_count();
+        mending.begin_pass();
+        EXPECT_EQ(zones.mend(2, LastResort::remove_or_insert), RunGuard::Verdict::go_on);
+        EXPECT_GT(insertion.count(), 20U);
+        EXPECT_GT(mover.statistics().removals, 20U);
+        EXPECT_EQ(staged.mesh.vertex_count(), before + insertion.count() - mover.statistics().removals);
+        std::size_t inserted = 0;
+        for (std::size_t v = 0; v < staged.mesh.vertex_slots(); ++v) inserted += staged.mesh.triangulation().is_inserted(VertexId{v});
+        EXPECT_EQ(inserted, staged.mesh.vertex_count());
+        EXPECT_FALSE(mending.waiting().empty());
+        EXPECT_LT(mending.waiting().size(), bad / 4);
+        EXPECT_EQ(staged.problem(true), "");
+        for (const auto& [cell, volume] : staged.cell_volumes()) EXPECT_NEAR(volume, volumes.at(cell), 1e-9);
+        std::vector<TetStore::Corners> out;
+        for (std::size_t t = 0; t < staged.mesh.tets().slots(); ++t) out.push_back(staged.mesh.tets().is_live(TetId{t}) ? staged.mesh.tets().corners(TetId{t}) : TetStore::Corners{});
+        return out;
+    });
 }
 
 /// All vertices inside of a mesh, smoothed in zones.
@@ -115,7 +118,8 @@ RunGuard::Verdict smooth_all(Refined& r, unsigned threads) {
     VertexMover mover(staged.mesh, staged.boundary, judge, 0);
     Mending mending(staged.mesh, judge, mover);
     mending.badness = [&](TetId t) { return judge.shape_badness(t); };
-    ZonePasses zones(staged.mesh, staged.boundary, staged.guard, workers, judge, mover, mending);
+    BestInsertion insertion(staged.mesh, staged.boundary, judge, 0);
+    ZonePasses zones(staged.mesh, staged.boundary, staged.guard, workers, judge, mover, insertion, mending);
     std::vector<VertexId> vertices;
     for (std::size_t v = 0; v < staged.mesh.vertex_slots(); ++v) vertices.push_back(VertexId{v});
     const std::size_t all = vertices.size();
