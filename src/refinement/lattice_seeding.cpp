@@ -469,7 +469,8 @@ bool LatticeSeeder::may_seed_at_once() const {
 std::uint64_t LatticeSeeder::seed() {
     const double base = most_used_spacing();
     if (base == kInfinity) return 0;
-    if (may_seed_at_once() && seed_at_once(base)) return inserted_;
+    went_at_once_ = may_seed_at_once() && seed_at_once(base);
+    if (went_at_once_) return inserted_;
     // From coarse to fine: vertices on an empty domain's boundary would all be neighbours of each other.
     constexpr double kCoarsest = 8;
     if (!split_boundary(kCoarsest)) return 0;

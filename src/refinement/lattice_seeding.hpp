@@ -43,6 +43,8 @@ public:
     std::uint64_t seed();
     /// Those of them that went in with tetrahedra that were known (lattice_filling.hpp).
     [[nodiscard]] std::uint64_t known() const { return known_; }
+    /// Did boundary and lattice go in together, and not from coarse to fine? (docs/decisions/0035)
+    [[nodiscard]] bool went_at_once() const { return went_at_once_; }
 
 private:
     /// For a view of a zone: splits its boundary.
@@ -138,6 +140,7 @@ private:
     const SizeField& sizes_;
     Workers& workers_;
     std::uint64_t inserted_ = 0, known_ = 0;
+    bool went_at_once_ = false;
     std::vector<double> radius_;   // by cell: circumradius bound that is the same all over it; infinite: none
     std::vector<double> spacing_;  // by cell: lattice constant of that
     std::vector<char> is_thin_;    // by cell: nothing is done in it

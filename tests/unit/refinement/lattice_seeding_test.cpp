@@ -10,6 +10,7 @@
 #include "core/infinity.hpp"
 #include "core/rng.hpp"
 #include "core/vec3_math.hpp"
+#include "support/acute_plcs.hpp"
 #include "support/expect_result.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
@@ -133,6 +134,7 @@ TEST(LatticeSeeding, SeedsAreClearOfTheBoundaryAndFillTheRest) {
 
 struct Seeded {
     std::uint64_t seeds = 0, known = 0;
+    bool at_once = false;
     std::vector<Vec3> points;
     std::vector<TetStore::Corners> tets;
 };
@@ -145,7 +147,10 @@ Seeded seeded(const Plc& plc, const MeshOptions& options, unsigned threads, cons
     staged.guard.set_conforming();
     Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
     LatticeSeeder seeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), workers);
-    Seeded out{seeder.seed(), seeder.known(), {}, {}};
+    Seeded out;
+    out.seeds = seeder.seed();
+    out.known = seeder.known();
+    out.at_once = seeder.went_at_once();
     EXPECT_EQ(staged.problem(false), "");
     for (std::size_t v = 0; v < staged.mesh.vertex_slots(); ++v) out.points.push_back(staged.mesh.point(VertexId{v}));
     for (std::size_t t = 0; t < staged.mesh.tets().slots(); ++t) out.tets.push_back(staged.mesh.tets().corners(TetId{t}));
@@ -205,8 +210,19 @@ TEST(LatticeSeeding, FacetsTooNearToEachOtherAreNotMadeAtOnce) {
     }
     const Seeded one = seeded(plc, sized(0.05), 1), several = seeded(plc, sized(0.05), 2);
     EXPECT_GT(one.seeds, 1000U);
+    EXPECT_FALSE(one.at_once);
     EXPECT_TRUE(several.points == one.points);
     EXPECT_TRUE(several.tets == one.tets);
+}
+
+TEST(LatticeSeeding, AllIsMadeAtOnceWhereNothingSpeaksAgainstIt) {
+    for (const NamedPlc& named : all_synthetic_plcs()) EXPECT_TRUE(seeded(named.plc, sized(0.04 * diagonal(named.plc)), 2).at_once) << named.name;
+    // A few vertices beside acute angles are no matter, many are.
+    EXPECT_TRUE(seeded(wedge(45), sized(0.05), 1).at_once);
+    EXPECT_FALSE(seeded(wedge(20), sized(0.05), 1).at_once);
+    MeshOptions limited = sized(0.04);
+    limited.limits.max_vertices = 10'000'000;
+    EXPECT_FALSE(seeded(cube(), limited, 1).at_once);
 }
 
 /// What is known would be there at once: a limit on memory is kept by insertion.
