@@ -229,6 +229,8 @@ public:
     [[nodiscard]] std::vector<ConformingMesh> split(Workers& workers, const Zones& zones, const ZoneRoom& room, ZoneViews& parts);
     /// Takes over what the views changed, in their order.
     void join(std::vector<ConformingMesh>& views);
+    /// Ids of vertices that views left over are not used any more: whoever is inserted from here on has a larger one than all that are there.
+    void forget_spare_vertices() { spare_vertices_.clear(); }
     /// Of a view: is there room to take out one vertex of a star of at most `most_tets` and put it elsewhere? If not, it has left its zone.
     [[nodiscard]] bool has_room_to_move(std::size_t most_tets) {
         const bool has_records = !tri_.is_view() || free_records_.size() >= 2 * most_tets;

@@ -60,8 +60,13 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
         if (best_cosine <= judge_.goal()) break;
     }
     if (!found) return {};
-    tri.forget_leaving();  // others would have
-    if (!has_both_ends(where) || !tri.find_conflict_cavity(best, t, cavity_) || !mesh_.may_insert(cavity_, where)) return {};
+    const bool others_left = tri.left_zone();
+    tri.forget_leaving();
+    const auto fail = [&] {
+        if (others_left) tri.leave_zone();
+        return VertexId{};
+    };
+    if (!has_both_ends(where) || !tri.find_conflict_cavity(best, t, cavity_) || !mesh_.may_insert(cavity_, where)) return fail();
     mesh_.save(cavity_.tets, before_);
     const InsertionReason reason = where.carrier == CarrierKind::region ? InsertionReason::sliver : InsertionReason::boundary_by_sliver;
     const VertexId v = mesh_.insert(cavity_, where, {.reason = reason, .parent = *std::max_element(corners.begin(), corners.end())});
@@ -70,7 +75,7 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
                                    [&](TetId n) { return boundary_.has_encroached(n) || (judge_.counts(n) && judge_.badness(n) > limit); });
     if (!fits) {
         mesh_.undo_new_insertion(v, where, before_);
-        return {};
+        return fail();
     }
     ++count_;
     return v;

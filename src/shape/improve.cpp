@@ -319,6 +319,7 @@ RunGuard::Verdict ShapeImprover::aim_at(double angle_deg, std::size_t vertices_a
 
 RunGuard::Verdict ShapeImprover::improve(double angle_deg) {
     const std::size_t vertices = mesh_.vertex_count(), slots = mesh_.vertex_slots();
+    mesh_.forget_spare_vertices();  // thinning tells by their ids which vertices are new
     if (refiner_.may_excuse()) guard_.set_ceiling(kCascadeCeiling * vertices + kCascadeAllowance);
     RunGuard::Verdict verdict = aim_at(std::min(angle_deg, kStraightDeg), vertices);
     // Beyond, most tetrahedra are bad: aiming at all of them at once spends its time on the many and leaves the worst. What a rung has reached is

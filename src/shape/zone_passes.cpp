@@ -81,7 +81,7 @@ private:
 };
 
 RunGuard::Verdict ZonePasses::mend(unsigned samples, LastResort last_resort) {
-    // Moves change no number of vertices, and last resorts by little: whether there are too many does not depend on who asks first.
+    // Moves change no number of vertices, and there is room below the limit for all that last resorts may put in: whether there are too many does not depend on who asks first.
     RunGuard::Verdict verdict = guard_.poll(mesh_.vertex_count(), mesh_.tets().live(), mending_.count());
     const bool resorts = last_resort != LastResort::none;
     for (unsigned turn = 0; turn < Zones::kTurns && verdict == RunGuard::Verdict::go_on; ++turn) {

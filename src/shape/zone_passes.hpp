@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passes of moves, and of what there is in place of them, on several threads: where much is bad, space is cut into zones, and each zone's part of the work is done in a view of the mesh, in the order that
-// it would have there. What would leave its zone waits for other cuts, or in the end for the whole mesh. Zones depend on what is bad and on the mesh's size,
-// never on the number of threads; so does what comes of it.
+// Passes of moves, and of what there is in place of them, on several threads: where much is bad, space is cut into zones, and each zone's part of the work is
+// done in a view of the mesh, in the order that it would have there. What would leave its zone waits for other cuts, or in the end for the whole mesh. Zones depend
+// on what is bad and on the mesh's size, never on the number of threads; so does what comes of it.
 #pragma once
 
 #include <cstddef>

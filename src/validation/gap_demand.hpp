@@ -55,10 +55,10 @@ void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 3>& corners
     const auto k = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
     // All of a triangle is within that of some corner, and within its longest side of each; local feature size falls no faster than distance grows.
     const double longest = std::sqrt(squares[k]), narrowest = std::max(*least - kFarthestOverSide * longest, *most - longest);
-    if (narrowest > 0 && !(area > slender * slender * narrowest * narrowest)) return;
+    if (slender > 0 && narrowest > 0 && !(area > slender * slender * narrowest * narrowest)) return;
     if (halvings.most == 0 || !(*most > 2 * *least || halvings.least > 0) || !(squares[k] > *least * *least)) {
         const double width = width_of_like_triangle(widths);
-        if (area > slender * slender * width * width) emit(area, width);
+        if (!(slender > 0) || area > slender * slender * width * width) emit(area, width);
         return;
     }
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
