@@ -102,6 +102,9 @@ public:
     void conform_in_zone(const std::function<bool(std::size_t)>& may_go_on);
     void join(const BoundaryRefiner& zone);
 
+    /// In a view: are the stars of both ends in the zone? They have the labels of a subsegment that is split or healed.
+    [[nodiscard]] bool has_both_stars(const Subsegment& s);
+
     /// Looks for encroached subsegments and subfaces among the new tetrahedra.
     void enqueue_encroached(const std::vector<TetId>& tets);
     /// Does a corner of t encroach a labelled edge or face of t?
@@ -140,7 +143,6 @@ private:
     SplitOutcome split_here(const Subsegment& s, const SplitRequest& request);
     SplitOutcome split_here(const Subface& s, const SplitRequest& request);
     bool halve_ball(VertexId v);
-    [[nodiscard]] bool has_both_stars(const Subsegment& s);
 
     template <class OnEdge, class OnFace>
     void visit_encroached(TetId t, OnEdge&& on_edge, OnFace&& on_face) const;

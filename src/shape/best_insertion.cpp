@@ -30,12 +30,6 @@ Vec3 BestInsertion::candidate(const Placement& where, const Vec3& centre, double
     return flush_to_exact_range(centre + (kPatternReach * reach) * unit);
 }
 
-/// In a view: labels of the subsegment that is split are on the stars of its ends.
-bool BestInsertion::has_both_ends(const Placement& where) {
-    Triangulation& tri = mesh_.triangulation();
-    return !tri.is_view() || where.carrier != CarrierKind::segment || (tri.find_star(where.a, changed_) && tri.find_star(where.b, changed_));
-}
-
 VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit) {
     if (!std::isfinite(reach)) return {};
     Triangulation& tri = mesh_.triangulation();
@@ -66,7 +60,8 @@ VertexId BestInsertion::insert_at(TetId t, const Placement& where, const Vec3& c
         if (others_left) tri.leave_zone();
         return VertexId{};
     };
-    if (!has_both_ends(where) || !tri.find_conflict_cavity(best, t, cavity_) || !mesh_.may_insert(cavity_, where)) return fail();
+    if (where.carrier == CarrierKind::segment && !boundary_.has_both_stars({where.a, where.b, SegmentId{where.carrier_id}})) return fail();
+    if (!tri.find_conflict_cavity(best, t, cavity_) || !mesh_.may_insert(cavity_, where)) return fail();
     mesh_.save(cavity_.tets, before_);
     const InsertionReason reason = where.carrier == CarrierKind::region ? InsertionReason::sliver : InsertionReason::boundary_by_sliver;
     const VertexId v = mesh_.insert(cavity_, where, {.reason = reason, .parent = *std::max_element(corners.begin(), corners.end())});

@@ -32,7 +32,6 @@ public:
 
 private:
     VertexId insert_at(TetId t, const Placement& where, const Vec3& centre, double reach, unsigned samples, double limit);
-    [[nodiscard]] bool has_both_ends(const Placement& where);
     [[nodiscard]] Vec3 candidate(const Placement& where, const Vec3& centre, double reach, const Vec3& unit) const;
 
     ConformingMesh& mesh_;

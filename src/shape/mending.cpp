@@ -34,11 +34,11 @@ Mending Mending::for_zone(ConformingMesh& view, const TetJudge& judge, VertexMov
 void Mending::join(Mending& zone) {
     clock_ = std::max(clock_, zone.clock_);
     for (const auto& [key, what] : zone.stuck_) stuck_[key] = what;
+    for (std::vector<Bad>* const some : {&zone.left_, &zone.heap_, &zone.outside_})
+        for (Bad& b : *some) b.is_mostly_stuck = false;  // the whole asks
     left_.insert(left_.end(), zone.left_.begin(), zone.left_.end());
     heap_.insert(heap_.end(), zone.heap_.begin(), zone.heap_.end());
     heap_.insert(heap_.end(), zone.outside_.begin(), zone.outside_.end());
-    for (std::vector<Bad>* const some : {&left_, &heap_})
-        for (Bad& b : *some) b.is_mostly_stuck = false;
 }
 
 void Mending::fit_arrays() {
@@ -160,7 +160,7 @@ bool Mending::pass(unsigned samples, const MayGoOn& may_go_on) {
         const Outcome outcome = mend(bad, samples);
         if (is_stuck && outcome != Outcome::not_now) patience.note(outcome == Outcome::done);
         if (outcome == Outcome::failed) left_.push_back(bad);
-        if (outcome == Outcome::for_the_whole) outside_.push_back(bad);
+        if (outcome == Outcome::left_zone) outside_.push_back(bad);
     }
     return true;
 }
@@ -199,14 +199,14 @@ Mending::Outcome Mending::mend(const Bad& bad, unsigned samples) {
             touch(mover_.changed());
             return Outcome::done;
         }
-        if (mesh_.triangulation().left_zone()) return Outcome::for_the_whole;
+        if (mesh_.triangulation().left_zone()) return Outcome::left_zone;
         if (!t.valid()) return Outcome::done;
         tried = {clock_, pass_, tried.failures + 1};
     }
     Stuck& stuck = stuck_[key];
     if (last_resort && stuck.last_resorts < kTriesInAll) {
         if (last_resort(bad, order)) return Outcome::done;
-        if (mesh_.triangulation().left_zone()) return Outcome::for_the_whole;
+        if (mesh_.triangulation().left_zone()) return Outcome::left_zone;
         ++stuck.last_resorts;
     }
     stuck.when = clock_;

@@ -106,7 +106,7 @@ private:
         std::uint64_t sharing_;
         std::uint64_t mended_ = 0, failed_ = 0, refused_ = 0;
     };
-    enum class Outcome : std::uint8_t { done, not_now, failed, for_the_whole };
+    enum class Outcome : std::uint8_t { done, not_now, failed, left_zone };
 
     Outcome mend(const Bad& bad, unsigned samples);
     [[nodiscard]] Stuck* find_stuck(std::uint64_t key);

@@ -69,18 +69,13 @@ bool VertexMover::find_placement() {
     return where_.b.valid();
 }
 
-/// In a view: labels of the subsegment that v splits are on the stars of its ends.
-bool VertexMover::has_both_ends() {
-    Triangulation& tri = mesh_.triangulation();
-    return !tri.is_view() || where_.carrier != CarrierKind::segment || (tri.find_star(where_.a, filling_) && tri.find_star(where_.b, filling_));
-}
-
 /// Finds the hole that v would leave, and what the star is like. @return false if v can't move.
 bool VertexMover::look_at_star(VertexId v) {
     if (mesh_.info(v).carrier == CarrierKind::input_vertex || !mesh_.triangulation().is_inserted(v)) return false;
     vertex_ = v;
     if (!mesh_.triangulation().find_hole(v, hole_, kMostTets) || !mesh_.has_room_to_move(std::max(kMostTets, hole_.filling.size()))) return false;
-    if (!find_placement() || !has_both_ends()) return false;
+    if (!find_placement()) return false;
+    if (where_.carrier == CarrierKind::segment && !boundary_.has_both_stars({where_.a, where_.b, SegmentId{where_.carrier_id}})) return false;
     home_ = mesh_.point(v);
     optimal_ = middle_ = Vec3{};
     star_cosine_ = 0;

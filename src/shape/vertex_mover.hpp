@@ -82,7 +82,6 @@ private:
     [[nodiscard]] bool is_flat_at_acute() const;
     void offer(const Vec3& offset, double reach);
     [[nodiscard]] bool find_placement();
-    [[nodiscard]] bool has_both_ends();
     [[nodiscard]] std::uint32_t count_attempt();
     [[nodiscard]] Vec3 on_carrier(const Vec3& p) const;
     /// Cosine of the star that p would get, more than `limit` as soon as that is certain, infinite if p is not to be had. Leaves p's cavity.

@@ -92,8 +92,8 @@ RunGuard::Verdict ZonePasses::mend(unsigned samples, LastResort last_resort) {
         const std::size_t step = std::max<std::size_t>(1, waiting.size() / (kSampleAZone * count));
         // Corners that are gone still have their places.
         for (std::size_t k = 0; k < waiting.size(); k += step) sample.push_back(mesh_.point(waiting[k].corners[0]));
-        for (Bad& b : waiting)
-            if (resorts && mending_.is_mostly_stuck) {
+        if (resorts && mending_.is_mostly_stuck)
+            for (Bad& b : waiting) {
                 const TetId t = find_tet(mesh_, b.corners, b.last);
                 b.is_mostly_stuck = t.valid() && mending_.is_mostly_stuck(t);
             }
