@@ -95,6 +95,7 @@ private:
     bool seed_at_once(double base);
     bool make_whole(std::size_t points);
     [[nodiscard]] double vertices_at_acute_segments() const;
+    void shrink_balls();
     void number_points(BoundarySample& sample);
     void insert_at_once(const BoundarySample& sample, std::span<Seed> seeds, const std::vector<char>& which, std::span<const CellId> cells);
     /// What seeds keep away from.

@@ -21,6 +21,8 @@ namespace {
 constexpr std::size_t kScaffold = 64;
 /// Vertices that make the boundary whole, over those that it got at once: with more the mesh is worse than one made from coarse to fine.
 constexpr double kMostMore = 0.07;
+/// Of a ball about an acute vertex, over the greatest circumradius of tetrahedra there.
+constexpr double kMostBall = 1.1;
 /// Facets at this angle, in degrees, need no copies of each other's vertices.
 constexpr double kNoTrouble = 40;
 /// Vertices beside sharper ones, over all of the boundary: copies need their order, and refinement pays for what goes without.
@@ -33,6 +35,8 @@ constexpr std::size_t kFacesAPiece = std::size_t{1} << 12;
 /// to each other, at acute angles and across gaps; where splitting them for that takes a lot of vertices it is better done from coarse to fine.
 /// @return false, the mesh being as it was, if that is so
 bool LatticeSeeder::seed_at_once(double base) {
+    const std::vector<double> balls = boundary_.acute().balls();
+    shrink_balls();
     std::optional<BoundarySample> sample;
     {
         SharedGuard guard(guard_, mesh_.vertex_count(), mesh_.tets().live());
@@ -40,9 +44,11 @@ bool LatticeSeeder::seed_at_once(double base) {
         sample = sample_boundary(mesh_, boundary_.acute(), radius, sizes_.varies(), boundary_.seed(), workers_, guard);
     }
     if (!sample) return true;
-    if (vertices_at_acute_segments() > kMostAcute * static_cast<double>(sample->points.size())) return false;
+    if (vertices_at_acute_segments() > kMostAcute * static_cast<double>(sample->points.size())) {
+        boundary_.acute().set_balls(balls);
+        return false;
+    }
     std::optional<ConformingMesh> before(mesh_);
-    const std::vector<double> balls = boundary_.acute().balls();
     number_points(*sample);
     std::vector<Face> faces = faces_of(*sample);
     std::optional<Lattice> lattice = find_lattice(base, faces);
@@ -114,6 +120,20 @@ double LatticeSeeder::vertices_at_acute_segments() const {
         sum += distance(a, b) / radius / std::sin(f.angle_deg / 2 * std::numbers::pi / 180);
     }
     return sum;
+}
+
+/// Of acute vertices, to what pieces of segments there are to be: splitting pieces in larger ones does that one by one.
+void LatticeSeeder::shrink_balls() {
+    AcuteGeometry& acute = boundary_.acute();
+    for (std::size_t i = 0; i < acute.balls().size(); ++i) {
+        const VertexId v{i};
+        if (!(acute.ball_radius(v) > 0)) continue;
+        double radius = kInfinity;
+        for (const FacetId f : acute.facets_at(v))
+            for (const CellId c : mesh_.plc().facets[f.index()].cells)
+                if (mesh_.is_filled(c)) radius = std::min(radius, radius_at(mesh_.plc().vertices[i], c));
+        while (acute.ball_radius(v) > kMostBall * radius) acute.halve_ball(v);
+    }
 }
 
 /// Vertices along a curve in space.
