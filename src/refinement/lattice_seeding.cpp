@@ -24,6 +24,8 @@ namespace {
 /// Volume over surface, in lattice constants, from which on a cell is seeded: a plate two layers thick, a cube of six. In thinner ones the gap
 /// between lattice and boundary costs as many vertices as the lattice saves.
 constexpr double kLeastThickness = 1;
+/// Twice volume over surface, a plate's thickness, in circumradius bounds, from which on both sides can be as fine as that and know nothing of each other.
+constexpr double kLeastGap = 1.2;
 /// Least part of the spacing allowed at which leaves are worth it where the size varies: the lattice has 0.349 vertices a cubed radius of its own,
 /// refinement makes 0.75 of the bound's, and (0.349 / 0.75)^(1/3) / kLatticeScale = 0.82.
 constexpr double kLeastUse = 0.82;
@@ -60,6 +62,7 @@ LatticeSeeder::LatticeSeeder(ConformingMesh& view, BoundaryRefiner& boundary, co
       workers_(whole.workers_),
       radius_(whole.radius_),
       spacing_(whole.spacing_),
+      boundary_radius_(whole.boundary_radius_),
       is_thin_(whole.is_thin_) {}
 
 LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes, Workers& workers)
@@ -70,6 +73,7 @@ LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, Ru
       workers_(workers),
       radius_(mesh.plc().cells.size(), kInfinity),
       spacing_(radius_.size(), kInfinity),
+      boundary_radius_(radius_.size(), kInfinity),
       is_thin_(radius_.size(), 0) {
     std::vector<double> surface(radius_.size(), 0);
     for (const ValidFacet& f : mesh.plc().facets) {
@@ -90,6 +94,7 @@ LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, Ru
         // Where sizes vary the finest decide whether the cell is thick: a lattice that has no room keeps away from the boundary by itself.
         const double finest = sizes.varies() ? std::min(radius_[c], kCircumradiusPerEdgeLength * sizes.smallest()) : radius_[c];
         is_thin_[c] = !(mesh.plc().cells[c].volume >= kLeastThickness * (kLatticeScale * finest / kLatticeCircumradius) * surface[c]);
+        if (is_thin_[c] == 0 || 2 * mesh.plc().cells[c].volume >= kLeastGap * finest * surface[c]) boundary_radius_[c] = radius_[c];
         if (is_thin_[c] != 0) radius_[c] = spacing_[c] = kInfinity;
     }
 }
@@ -97,6 +102,11 @@ LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, Ru
 double LatticeSeeder::radius_at(const Vec3& p, CellId c) const {
     if (!sizes_.varies()) return radius_[c.index()];
     return is_thin_[c.index()] != 0 ? kInfinity : std::min(radius_[c.index()], kCircumradiusPerEdgeLength * sizes_.edge_length(p, c));
+}
+
+double LatticeSeeder::boundary_radius_at(const Vec3& p, CellId c) const {
+    const double most = boundary_radius_[c.index()];
+    return sizes_.varies() && most < kInfinity ? std::min(most, kCircumradiusPerEdgeLength * sizes_.edge_length(p, c)) : most;
 }
 
 double LatticeSeeder::spacing_at(const Vec3& p, CellId c) const {

@@ -127,6 +127,7 @@ private:
     bool fill(std::span<Seed> seeds, const std::vector<char>& in_bulk, LatticeFilling&& known);
     Outcome insert(const Vec3& p, TetId& near, VertexId& vertex);
     [[nodiscard]] double radius_at(const Vec3& p, CellId c) const;
+    [[nodiscard]] double boundary_radius_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double spacing_at(const Vec3& p, CellId c) const;
     [[nodiscard]] double radius_bound(TetId t, const Vec3& p) const;
     [[nodiscard]] double most_used_spacing() const;
@@ -144,7 +145,8 @@ private:
     bool went_at_once_ = false;
     std::vector<double> radius_;   // by cell: circumradius bound that is the same all over it; infinite: none
     std::vector<double> spacing_;  // by cell: lattice constant of that
-    std::vector<char> is_thin_;    // by cell: nothing is done in it
+    std::vector<double> boundary_radius_;  // by cell: the same where only its boundary is to be as fine as that, too
+    std::vector<char> is_thin_;    // by cell: no lattice in it
     bool tets_are_numbered_ = false;  // by what does not depend on threads
     std::optional<Savepoint> last_;    // of splitting the boundary
     std::uint64_t left_at_last_ = 0;  // vertices

@@ -40,7 +40,7 @@ bool LatticeSeeder::seed_at_once(double base) {
     std::optional<BoundarySample> sample;
     {
         SharedGuard guard(guard_, mesh_.vertex_count(), mesh_.tets().live());
-        const auto radius = [&](const Vec3& p, CellId c) { return radius_at(p, c); };
+        const auto radius = [&](const Vec3& p, CellId c) { return boundary_radius_at(p, c); };
         sample = sample_boundary(mesh_, boundary_.acute(), radius, sizes_.varies(), boundary_.seed(), workers_, guard);
     }
     if (!sample) return true;
@@ -131,7 +131,7 @@ void LatticeSeeder::shrink_balls() {
         double radius = kInfinity;
         for (const FacetId f : acute.facets_at(v))
             for (const CellId c : mesh_.plc().facets[f.index()].cells)
-                if (mesh_.is_filled(c)) radius = std::min(radius, radius_at(mesh_.plc().vertices[i], c));
+                if (mesh_.is_filled(c)) radius = std::min(radius, boundary_radius_at(mesh_.plc().vertices[i], c));
         while (acute.ball_radius(v) > kMostBall * radius) acute.halve_ball(v);
     }
 }
