@@ -262,7 +262,7 @@ private:
             });
             result_.mesh.names = plc_.names;
             if (result_.statistics.gaps) result_.statistics.notes.push_back(describe(*result_.statistics.gaps));
-            size_rows_ = report_sizes(result_, options_, valid, refiner.sizes());
+            size_rows_ = report_sizes(result_, options_, valid, refiner.sizes(), workers_);
         });
         if (verdict == RunGuard::Verdict::go_on && exudes && asks_for_shape(options_))
             timed(Stage::shape, [&] {

@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,28 +25,49 @@ constexpr std::size_t kWorstInARegion = 8;
 /// (as in Refiner::guard_edges).
 constexpr double kShortestPerLength = (1 - kPracticalDelta) / 2 * kCircumradiusPerEdgeLength;
 
-struct RegionEdge {
-    std::int32_t region = 0;
-    std::uint32_t a = 0, b = 0;
-    auto operator<=>(const RegionEdge&) const = default;
-};
+constexpr std::size_t kGrain = std::size_t{1} << 12;
 
-/// Every edge of every region, once for each.
-std::vector<RegionEdge> edges_by_region(const TetMesh& mesh) {
-    std::vector<RegionEdge> edges;
-    edges.reserve(6 * mesh.tets.size());
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-        for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t j = i + 1; j < 4; ++j) edges.push_back({mesh.tet_regions[t], std::min(mesh.tets[t][i], mesh.tets[t][j]), std::max(mesh.tets[t][i], mesh.tets[t][j])});
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    return edges;
-}
+/// Edges by their lower end, each as often as tetrahedra have it.
+class EdgeLists {
+public:
+    struct Edge {
+        std::uint32_t high = 0;
+        std::int32_t region = 0;
+        auto operator<=>(const Edge&) const = default;
+    };
+
+    EdgeLists(const TetMesh& mesh, Workers& workers) : first_(mesh.vertices.size() + 1, 0) {
+        const auto for_edges = [&](auto&& use) {
+            workers.for_ranges(mesh.tets.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
+                for (std::size_t t = begin; t < end; ++t)
+                    for (std::size_t i = 0; i < 4; ++i)
+                        for (std::size_t j = i + 1; j < 4; ++j) use(std::min(mesh.tets[t][i], mesh.tets[t][j]), std::max(mesh.tets[t][i], mesh.tets[t][j]), mesh.tet_regions[t]);
+            });
+        };
+        const auto add_one = [](std::size_t& counter) { return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed); };
+        for_edges([&](std::uint32_t low, std::uint32_t, std::int32_t) { add_one(first_[low + 1]); });
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+        edges_.resize(first_.back());
+        std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+        for_edges([&](std::uint32_t low, std::uint32_t high, std::int32_t region) { edges_[add_one(next[low])] = {high, region}; });
+    }
+
+    /// Those of a vertex, each once for every region; sorts them. Not twice, nor for one vertex by several threads.
+    [[nodiscard]] std::span<const Edge> take(std::size_t vertex) {
+        const std::span<Edge> all(edges_.data() + first_[vertex], edges_.data() + first_[vertex + 1]);
+        std::sort(all.begin(), all.end());
+        return all.first(static_cast<std::size_t>(std::unique(all.begin(), all.end()) - all.begin()));
+    }
+
+private:
+    std::vector<std::size_t> first_;  // edges of a vertex begin there and end where the next one's begin
+    std::vector<Edge> edges_;
+};
 
 class SizeReport {
 public:
-    SizeReport(MeshResult& result, const MeshOptions& options, const ValidPlc& plc, const SizeField& sizes)
-        : result_(result), mesh_(result.mesh), options_(options), plc_(plc), sizes_(sizes) {
+    SizeReport(MeshResult& result, const MeshOptions& options, const ValidPlc& plc, const SizeField& sizes, Workers& workers)
+        : result_(result), mesh_(result.mesh), options_(options), plc_(plc), sizes_(sizes), workers_(workers) {
         for (std::size_t c = plc.cells.size(); c-- > 0;)
             if (plc.cells[c].filled) cell_of_[plc.cells[c].region] = CellId{c};
     }
@@ -61,27 +86,57 @@ private:
         std::vector<std::pair<double, std::size_t>> missed;  // by how much, tetrahedron
     };
 
-    void report_lengths() {
-        std::map<std::int32_t, Region> regions;
-        std::vector<double> ratios;
-        for (const auto& [region, a, b] : edges_by_region(mesh_)) {
-            const Vec3 &p = mesh_.vertices[a], &q = mesh_.vertices[b];
-            const double asked = sizes_.edge_length(0.5 * (p + q), cell_of_[region]), length = distance(p, q);
-            if (!(asked < std::numeric_limits<double>::infinity())) continue;
-            Region& r = regions[region];
-            r.asked += asked;
-            r.achieved += length;
-            ++r.edges;
-            ratios.push_back(length / asked);
-        }
-        for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+    using Regions = std::map<std::int32_t, Region>;
+
+    /// Of a range of vertices: edges that begin there.
+    struct Lengths {
+        Regions regions;
+        std::vector<double> ratios;  // to what is asked
+    };
+    void measure(EdgeLists& edges, std::size_t begin, std::size_t end, Lengths& out) const {
+        for (std::size_t v = begin; v < end; ++v)
+            for (const auto& [high, region] : edges.take(v)) {
+                const Vec3 &p = mesh_.vertices[v], &q = mesh_.vertices[high];
+                const double asked = sizes_.edge_length(0.5 * (p + q), cell_of_.at(region)), length = distance(p, q);
+                if (!(asked < std::numeric_limits<double>::infinity())) continue;
+                Region& r = out.regions[region];
+                r.asked += asked;
+                r.achieved += length;
+                ++r.edges;
+                out.ratios.push_back(length / asked);
+            }
+    }
+    /// Of a range of tetrahedra: those that are too large.
+    void list_missed(std::size_t begin, std::size_t end, Regions& out) const {
+        for (std::size_t t = begin; t < end; ++t) {
             const auto& c = mesh_.tets[t];
             const Vec3 &p = mesh_.vertices[c[0]], &q = mesh_.vertices[c[1]], &r = mesh_.vertices[c[2]], &s = mesh_.vertices[c[3]];
             const std::int32_t region = mesh_.tet_regions[t];
-            const double bound = kSizeTolerance * std::sqrt(sizes_.of(p, q, r, s, cell_of_[region]).max_squared_circumradius) * (1 + 1e-9);
+            const double bound = kSizeTolerance * std::sqrt(sizes_.of(p, q, r, s, cell_of_.at(region)).max_squared_circumradius) * (1 + 1e-9);
             if (!(bound < std::numeric_limits<double>::infinity())) continue;
-            if (const double by = shape_of(p, q, r, s).circumradius / bound; by > 1) regions[region].missed.push_back({by, t});
+            if (const double by = shape_of(p, q, r, s).circumradius / bound; by > 1) out[region].missed.push_back({by, t});
         }
+    }
+
+    void report_lengths() {
+        EdgeLists edges(mesh_, workers_);
+        std::vector<Lengths> lengths((mesh_.vertices.size() + kGrain - 1) / kGrain);
+        workers_.for_ranges(mesh_.vertices.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) { measure(edges, begin, end, lengths[piece]); });
+        std::vector<Regions> missed((mesh_.tets.size() + kGrain - 1) / kGrain);
+        workers_.for_ranges(mesh_.tets.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) { list_missed(begin, end, missed[piece]); });
+        Regions regions;
+        std::vector<double> ratios;
+        for (const Lengths& l : lengths) {
+            ratios.insert(ratios.end(), l.ratios.begin(), l.ratios.end());
+            for (const auto& [region, here] : l.regions) {
+                Region& r = regions[region];
+                r.asked += here.asked;
+                r.achieved += here.achieved;
+                r.edges += here.edges;
+            }
+        }
+        for (const Regions& piece : missed)
+            for (const auto& [region, here] : piece) regions[region].missed.insert(regions[region].missed.end(), here.missed.begin(), here.missed.end());
         for (auto& [region, r] : regions) {
             if (r.edges == 0) continue;
             const auto n = static_cast<double>(r.edges);
@@ -148,14 +203,15 @@ private:
     const MeshOptions& options_;
     const ValidPlc& plc_;
     const SizeField& sizes_;
+    Workers& workers_;
     std::map<std::int32_t, CellId> cell_of_;
     std::vector<AskedAchieved> rows_;
 };
 
 }  // namespace
 
-std::vector<AskedAchieved> report_sizes(MeshResult& result, const MeshOptions& options, const ValidPlc& plc, const SizeField& sizes) {
-    return SizeReport(result, options, plc, sizes).rows();
+std::vector<AskedAchieved> report_sizes(MeshResult& result, const MeshOptions& options, const ValidPlc& plc, const SizeField& sizes, Workers& workers) {
+    return SizeReport(result, options, plc, sizes, workers).rows();
 }
 
 }  // namespace wellmesh
