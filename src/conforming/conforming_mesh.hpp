@@ -168,8 +168,10 @@ public:
     /// Inserts those of such vertices that it can, in their order. @return as above
     std::vector<VertexId> insert_inside(Workers& workers, std::span<const VertexId> vertices, const std::function<bool(const Vec3&, CellId)>& is_welcome,
                                         const std::function<bool()>& may_go_on, std::vector<VertexId>& encroaching);
-    /// Gives a number to a point that is to be a vertex; it is not inserted yet. @param ball  as in VertexInfo
-    VertexId add_vertex(const CarriedPoint& p, InsertionReason reason, VertexId ball = {});
+    /// Gives numbers to n points that are to be vertices; they are not inserted yet, and nothing until set_new_vertex() was called for each. @return the first
+    VertexId add_vertices(std::size_t n);
+    /// From any thread. @param ball  as in VertexInfo
+    void set_new_vertex(VertexId v, const CarriedPoint& p, InsertionReason reason, VertexId ball = {});
     /// Inserts such vertices, wherever they are, on all workers. All labels and cells are lost, and ids of tetrahedra are new: relabel() comes next.
     /// @param order  neighbours in space near each other, in rounds of growing size (delaunay/spatial_order.hpp)  @pre there is no savepoint
     void insert_at_once(Workers& workers, std::span<const std::uint32_t> order);

@@ -18,9 +18,14 @@ constexpr std::size_t kSlotsAPiece = std::size_t{1} << 14;
 
 }  // namespace
 
-VertexId ConformingMesh::add_vertex(const CarriedPoint& p, InsertionReason reason, VertexId ball) {
-    info_.push_back({.carrier = p.carrier, .reason = reason, .carrier_id = p.carrier_id, .ball = ball});
-    return tri_.add_point(p.point);
+VertexId ConformingMesh::add_vertices(std::size_t n) {
+    info_.resize_as_is(info_.size() + n);
+    return tri_.add_points(n);
+}
+
+void ConformingMesh::set_new_vertex(VertexId v, const CarriedPoint& p, InsertionReason reason, VertexId ball) {
+    info_[v.index()] = {.carrier = p.carrier, .reason = reason, .carrier_id = p.carrier_id, .ball = ball};
+    tri_.set_new_point(v, p.point);
 }
 
 void ConformingMesh::insert_at_once(Workers& workers, std::span<const std::uint32_t> order) {

@@ -18,6 +18,12 @@ VertexId Triangulation::add_point(const Vec3& p) {
     return VertexId{vertices_.size() - 1};
 }
 
+VertexId Triangulation::add_points(std::size_t n) {
+    const std::size_t first = vertices_.size();
+    vertices_.resize_as_is(first + n);
+    return VertexId{first};
+}
+
 void Triangulation::reserve(std::size_t vertices) {
     vertices_.reserve(vertices);
     tets_.reserve(7 * vertices);  // 6.77 tetrahedra a vertex for random points

@@ -128,6 +128,9 @@ public:
 
     // --- vertices
     VertexId add_point(const Vec3& p);  ///< stores coordinates, no more
+    /// Numbers for n more, the first of which is returned; set_new_point() stores their coordinates, on any thread.
+    VertexId add_points(std::size_t n);
+    void set_new_point(VertexId v, const Vec3& p) { vertices_[v.index()] = {p}; }
     [[nodiscard]] const Vec3& point(VertexId v) const { return vertices_[v.index()].point; }
     [[nodiscard]] std::size_t vertex_count() const { return vertices_.size(); }  ///< stored, inserted or not
     [[nodiscard]] bool is_inserted(VertexId v) const { return vertices_[v.index()].tet.valid(); }

@@ -74,41 +74,58 @@ std::uint32_t GradedOctree::find(unsigned depth, const std::array<std::uint32_t,
     return node;
 }
 
-void GradedOctree::balance() {
+/// Calls visit(depth, at) for the cells that must be split down to the size of the leaf's parent: those around it where they touch a used leaf of the eight siblings.
+/// The first such one of them asks for all.
+template <class Visit>
+void GradedOctree::visit_coarsest_beside(std::uint32_t leaf, Visit&& visit) const {
+    const Node node = nodes_[leaf];
+    if (node.first_child != 0 || node.depth < 2) return;
+    const std::uint32_t eldest = eldest_sibling(leaf);
+    std::array<bool, 27> is_touched{};
+    for (std::uint32_t s = 0; s < 8; ++s) {
+        if (!nodes_[eldest + s].used || !is_leaf(eldest + s)) continue;
+        if (eldest + s < leaf) return;
+        const std::uint32_t x = s & 1U, y = (s >> 1) & 1U, z = s >> 2;
+        for (std::uint32_t c = 0; c < 8; ++c) is_touched[x + (c & 1U) + 3 * (y + ((c >> 1) & 1U)) + 9 * (z + (c >> 2))] = true;
+    }
+    const unsigned depth = node.depth - 1U;
+    const std::uint32_t cells = 1U << depth;
+    for (std::uint32_t k = 0; k < 27; ++k) {
+        if (!is_touched[k]) continue;
+        // Unsigned wrap-around makes cells outside the root too large.
+        const std::array<std::uint32_t, 3> at{node.at[0] / 2 + k % 3 - 1, node.at[1] / 2 + k / 3 % 3 - 1, node.at[2] / 2 + k / 9 - 1};
+        if (at[0] < cells && at[1] < cells && at[2] < cells) visit(depth, at);
+    }
+}
+
+void GradedOctree::balance(Workers& workers) {
+    constexpr std::size_t kGrain = std::size_t{1} << 13;
+    using At = std::array<std::uint32_t, 3>;
+    // Most leaves have nothing coarser beside them, and never will.
+    std::vector<std::vector<std::uint32_t>> asking((nodes_.size() + kGrain - 1) / kGrain);
+    workers.for_ranges(nodes_.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+            if (!is_leaf(i) || !nodes_[i].used) continue;
+            bool asks = false;
+            visit_coarsest_beside(i, [&](unsigned depth, const At& at) { asks = asks || nodes_[find(depth, at)].depth < depth; });
+            if (asks) asking[piece].push_back(i);
+        }
+    });
     std::vector<std::uint32_t> waiting;
-    for (std::uint32_t i = 0; i < nodes_.size(); ++i)
-        if (is_leaf(i) && nodes_[i].used) waiting.push_back(i);
+    for (const std::vector<std::uint32_t>& piece : asking) waiting.insert(waiting.end(), piece.begin(), piece.end());
     while (!waiting.empty()) {
         const std::uint32_t leaf = waiting.back();
-        const Node node = nodes_[leaf];
         waiting.pop_back();
-        if (node.first_child != 0 || node.depth < 2) continue;
-        // Cells around its parent must be split down to the parent's own size where they touch a used leaf. The first such one of eight siblings asks for all.
-        const std::uint32_t eldest = leaf - ((node.at[0] & 1U) + 2 * (node.at[1] & 1U) + 4 * (node.at[2] & 1U));
-        std::array<bool, 27> is_touched{};
-        bool asked = false;
-        for (std::uint32_t s = 0; s < 8; ++s) {
-            if (!nodes_[eldest + s].used || !is_leaf(eldest + s)) continue;
-            asked = asked || eldest + s < leaf;
-            const std::uint32_t x = s & 1U, y = (s >> 1) & 1U, z = s >> 2;
-            for (std::uint32_t c = 0; c < 8; ++c) is_touched[x + (c & 1U) + 3 * (y + ((c >> 1) & 1U)) + 9 * (z + (c >> 2))] = true;
-        }
-        if (asked) continue;
-        const unsigned depth = node.depth - 1U;
-        const std::uint32_t cells = 1U << depth;
-        for (std::uint32_t k = 0; k < 27; ++k) {
-            if (!is_touched[k]) continue;
-            // Unsigned wrap-around makes cells outside the root too large.
-            const std::array<std::uint32_t, 3> at{node.at[0] / 2 + k % 3 - 1, node.at[1] / 2 + k / 3 % 3 - 1, node.at[2] / 2 + k / 9 - 1};
-            if (at[0] >= cells || at[1] >= cells || at[2] >= cells) continue;
-            std::uint32_t neighbour = find(depth, at);
-            while (nodes_[neighbour].depth < depth) {
-                const std::uint32_t first = split(neighbour);
-                if (nodes_[neighbour].used)
-                    for (std::uint32_t c = 0; c < 8; ++c) waiting.push_back(first + c);
-                neighbour = find(depth, at);
+        visit_coarsest_beside(leaf, [&](unsigned depth, const At& at) {
+            for (std::uint32_t neighbour = find(depth, at); nodes_[neighbour].depth < depth; neighbour = find(depth, at)) {
+                const std::uint32_t first = split(neighbour), eldest = eldest_sibling(neighbour);
+                if (!nodes_[neighbour].used) continue;
+                for (std::uint32_t c = 0; c < 8; ++c) {
+                    waiting.push_back(first + c);
+                    if (eldest + c != neighbour) waiting.push_back(eldest + c);  // it may have left it to this one to ask
+                }
             }
-        }
+        });
     }
 }
 

@@ -60,7 +60,7 @@ public:
     /// Only used leaves have lattice points.
     void use(std::uint32_t leaf) { nodes_[leaf].used = true; }
     /// Splits leaves until those that share a corner with a used one differ from it by at most one level.
-    void balance();
+    void balance(Workers& workers);
     /// Corners and centres of the used leaves, each once, in an order that depends on the tree alone. @param leaves  gets these leaves
     [[nodiscard]] std::vector<LatticePoint> lattice(Workers& workers, LatticeLeaves& leaves) const;
     /// Calls visit(node) for each leaf that meets the closed box from lo to hi.
@@ -90,6 +90,13 @@ private:
         std::uint8_t depth = 0;
         bool used = false;
     };
+    /// @pre it is not the root
+    [[nodiscard]] std::uint32_t eldest_sibling(std::uint32_t node) const {
+        const std::array<std::uint32_t, 3>& at = nodes_[node].at;
+        return node - ((at[0] & 1U) + 2 * (at[1] & 1U) + 4 * (at[2] & 1U));
+    }
+    template <class Visit>
+    void visit_coarsest_beside(std::uint32_t leaf, Visit&& visit) const;
     /// Takes over what is below a node of another tree, from `next` on of the branches there.
     void take_over(std::uint32_t leaf, const GradedOctree& from, std::uint32_t node, std::span<const Branch> branches, std::size_t& next);
     /// The leaf, or the node of that depth, that holds cell `at` of the grid of this depth.

@@ -515,7 +515,7 @@ std::optional<LatticeSeeder::Lattice> LatticeSeeder::find_lattice(double base, s
     std::optional<Lattice> out(Lattice{GradedOctree(0.5 * (lo + hi) - 0.5 * Vec3{side, side, side}, side), {}, {}});
     GradedOctree& tree = *out->tree;
     if (!OctreeBuilder(*this, tree, std::move(faces)).run()) return {};
-    tree.balance();
+    tree.balance(workers_);
     out->points = tree.lattice(workers_, out->leaves);
     return out;
 }

@@ -27,7 +27,7 @@ constexpr double kMostBall = 1.1;
 constexpr double kNoTrouble = 40;
 /// Vertices beside sharper ones, over all of the boundary: copies need their order, and refinement pays for what goes without.
 constexpr double kMostAcute = 0.02;
-constexpr std::size_t kFacesAPiece = std::size_t{1} << 12;
+constexpr std::size_t kFacesAPiece = std::size_t{1} << 12, kVerticesAPiece = std::size_t{1} << 13;
 
 }  // namespace
 
@@ -142,21 +142,28 @@ void LatticeSeeder::number_points(BoundarySample& sample) {
     points.reserve(sample.points.size());
     for (const BoundarySample::Point& p : sample.points) points.push_back(p.at.point);
     const std::vector<std::uint32_t> order = biased_spatial_order(points, workers_);
-    const std::size_t first = mesh_.vertex_slots();
+    const std::size_t first = mesh_.add_vertices(order.size()).index();
     std::vector<VertexId> vertex_of(order.size());
-    for (const std::uint32_t k : order) {
-        const BoundarySample::Point& p = sample.points[k];
-        vertex_of[k] = mesh_.add_vertex(p.at, InsertionReason::boundary_by_size, p.ball);
-        sample.vertices.push_back(vertex_of[k]);
-    }
+    sample.vertices.resize(order.size());
+    workers_.for_ranges(order.size(), kVerticesAPiece, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const BoundarySample::Point& p = sample.points[order[i]];
+            vertex_of[order[i]] = sample.vertices[i] = VertexId{first + i};
+            mesh_.set_new_vertex(sample.vertices[i], p.at, InsertionReason::boundary_by_size, p.ball);
+        }
+    });
     const auto rename = [&](VertexId& v) {
         if (v.index() >= first) v = vertex_of[v.index() - first];
     };
-    for (Subsegment& s : sample.segments) {
-        rename(s.a);
-        rename(s.b);
-    }
-    for (Subface& s : sample.faces) std::for_each(s.corners.begin(), s.corners.end(), rename);
+    workers_.for_ranges(sample.segments.size(), kFacesAPiece, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            rename(sample.segments[i].a);
+            rename(sample.segments[i].b);
+        }
+    });
+    workers_.for_ranges(sample.faces.size(), kFacesAPiece, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) std::for_each(sample.faces[i].corners.begin(), sample.faces[i].corners.end(), rename);
+    });
 }
 
 /// As list_faces() does it of faces of the mesh.
@@ -177,18 +184,40 @@ std::vector<LatticeSeeder::Face> LatticeSeeder::faces_of(const BoundarySample& s
 
 /// Together with what the boundary gets. What is labelled then is what was asked for, as far as it is there.
 void LatticeSeeder::insert_at_once(const BoundarySample& sample, std::span<Seed> seeds, const std::vector<char>& which, std::span<const CellId> cells) {
-    std::vector<std::uint32_t> vertices;  // to go in
-    std::vector<Vec3> points;
-    for (const VertexId v : sample.vertices) vertices.push_back(v.value());
-    const std::size_t scaffold = seeds.size() / kScaffold;
-    for (std::size_t k = 0; k < seeds.size(); ++k) {
-        seeds[k].waits = which[k] == 0 && seeds[k].waits != 0;
-        if (which[k] == 0) continue;
-        seeds[k].vertex = mesh_.add_vertex({seeds[k].point, CarrierKind::region, cells[k].value()}, InsertionReason::lattice);
-        if (which[k] != kKnown || k < scaffold) vertices.push_back(seeds[k].vertex.value());
-    }
-    points.reserve(vertices.size());
-    for (const std::uint32_t v : vertices) points.push_back(mesh_.point(VertexId{v}));
+    const std::size_t scaffold = seeds.size() / kScaffold, sampled = sample.vertices.size();
+    const auto is_vertex = [&](std::size_t k) { return which[k] != 0; };
+    const auto goes_in = [&](std::size_t k) { return which[k] != 0 && (which[k] != kKnown || k < scaffold); };
+    // How many there are before each piece's own is known once all are counted.
+    struct Counts {
+        std::size_t vertices = 0, to_go_in = 0;
+    };
+    std::vector<Counts> before((seeds.size() + kVerticesAPiece - 1) / kVerticesAPiece);
+    workers_.for_ranges(seeds.size(), kVerticesAPiece, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        for (std::size_t k = begin; k < end; ++k) {
+            before[piece].vertices += is_vertex(k);
+            before[piece].to_go_in += goes_in(k);
+        }
+    });
+    Counts all{0, sampled};
+    for (Counts& c : before) c = {std::exchange(all.vertices, all.vertices + c.vertices), std::exchange(all.to_go_in, all.to_go_in + c.to_go_in)};
+    const std::size_t first = mesh_.add_vertices(all.vertices).index();
+    std::vector<std::uint32_t> vertices(all.to_go_in);  // to go in
+    std::vector<Vec3> points(all.to_go_in);
+    const auto let_in = [&](std::size_t at, VertexId v) {
+        vertices[at] = v.value();
+        points[at] = mesh_.point(v);
+    };
+    for (std::size_t i = 0; i < sampled; ++i) let_in(i, sample.vertices[i]);
+    workers_.for_ranges(seeds.size(), kVerticesAPiece, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        Counts next = before[piece];
+        for (std::size_t k = begin; k < end; ++k) {
+            seeds[k].waits = which[k] == 0 && seeds[k].waits != 0;
+            if (!is_vertex(k)) continue;
+            seeds[k].vertex = VertexId{first + next.vertices++};
+            mesh_.set_new_vertex(seeds[k].vertex, {seeds[k].point, CarrierKind::region, cells[k].value()}, InsertionReason::lattice);
+            if (goes_in(k)) let_in(next.to_go_in++, seeds[k].vertex);
+        }
+    });
     std::vector<std::uint32_t> order = biased_spatial_order(points, workers_);
     for (std::uint32_t& k : order) k = vertices[k];
     mesh_.insert_at_once(workers_, order);

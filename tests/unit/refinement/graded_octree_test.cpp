@@ -35,7 +35,8 @@ TEST(GradedOctree, EqualLeavesMakeTheBodyCentredCubicLattice) {
     GradedOctree tree({-1, 2, 5}, 4);
     split_all(tree, 3);
     for (const std::uint32_t i : leaves(tree)) tree.use(i);
-    tree.balance();
+    Workers workers(2);
+    tree.balance(workers);
     const std::vector<LatticePoint> lattice = lattice_of(tree);
     EXPECT_EQ(lattice.size(), 8U * 8 * 8 + 9U * 9 * 9);
     for (const LatticePoint& p : lattice) {
@@ -75,7 +76,8 @@ TEST(GradedOctree, LeavesThatShareACornerDifferByOneLevelAtMost) {
                 if (holds) tree.split(i);
             }
         for (const std::uint32_t i : leaves(tree)) tree.use(i);
-        tree.balance();
+        Workers workers(2);
+        tree.balance(workers);
         const auto all = leaves(tree);
         double volume = 0;
         for (const std::uint32_t i : all) {
