@@ -13,6 +13,7 @@
 #include "core/edge_key.hpp"
 #include "core/huge_pages.hpp"
 #include "core/resident_memory.hpp"
+#include "core/shared_array.hpp"
 #include "core/sorting.hpp"
 #include "core/vec3_math.hpp"
 #include "delaunay/spatial_order.hpp"
@@ -55,7 +56,7 @@ void list_constraints(const ConformingMesh& mesh, TetId t, const std::vector<std
 /// the others along a space-filling curve, tetrahedra by their lowest vertex. So whoever walks through the mesh, a solver or the
 /// certificate, walks through memory.
 template <class InOutput>
-std::vector<TetId> number_output(const ConformingMesh& mesh, Workers& workers, InOutput&& in_output, std::vector<std::uint32_t>& number, TetMesh& out) {
+SharedArray<TetId> number_output(const ConformingMesh& mesh, Workers& workers, InOutput&& in_output, std::vector<std::uint32_t>& number, TetMesh& out) {
     const TetStore& tets = mesh.tets();
     const ValidPlc& plc = mesh.plc();
     const bool alone = workers.threads() == 1;
@@ -86,8 +87,11 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, Workers& workers, I
     });
     Counts all;
     for (Counts& c : before) c = {std::exchange(all.input, all.input + c.input), std::exchange(all.steiner, all.steiner + c.steiner)};
-    std::vector<VertexId> order(all.input + all.steiner), steiner(all.steiner);
-    std::vector<Vec3> steiner_points(all.steiner);
+    SharedArray<VertexId> order, steiner;
+    SharedArray<Vec3> steiner_points;
+    order.resize_as_is(all.input + all.steiner);
+    steiner.resize_as_is(all.steiner);
+    steiner_points.resize_as_is(all.steiner);
     workers.for_ranges(number.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         Counts next = before[piece];
         for_used(begin, end, [&](VertexId v, bool is_input) {
@@ -99,11 +103,13 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, Workers& workers, I
             }
         });
     });
-    const std::vector<std::uint32_t> along_curve = spatial_order(steiner_points, workers);
+    const std::vector<std::uint32_t> along_curve = spatial_order({steiner_points.data(), steiner_points.size()}, workers);
     workers.for_ranges(all.steiner, kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) order[all.input + i] = steiner[along_curve[i]];
     });
+    reserve_on_huge_pages(out.vertices, order.size(), workers);
     out.vertices.resize(order.size());
+    reserve_on_huge_pages(out.vertex_carriers, order.size(), workers);
     out.vertex_carriers.resize(order.size());
     if (!plc.vertex_markers.empty()) out.vertex_markers.assign(order.size(), 0);
     workers.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -130,28 +136,29 @@ std::vector<TetId> number_output(const ConformingMesh& mesh, Workers& workers, I
     std::vector<std::uint32_t> first(order.size() + 1, 0);
     for_output([&](TetId t) { add_one(first[lowest(t) + 1]); });
     for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-    auto listed = make_on_huge_pages<TetId>(first.back(), workers);
+    SharedArray<TetId> listed;
+    listed.resize_as_is(first.back());
     for_output([&](TetId t) { listed[add_one(first[lowest(t)])] = t; });
     // Each start has moved on to the next one's. Several threads dealt those of a vertex out as it happened.
     if (!alone)
         workers.for_ranges(order.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v)
-                std::sort(listed.begin() + (v == 0 ? 0 : first[v - 1]), listed.begin() + first[v]);
+                std::sort(listed.data() + (v == 0 ? 0 : first[v - 1]), listed.data() + first[v]);
         });
     return listed;
 }
 
 }  // namespace
 
-TetMesh extract_mesh(ConformingMesh&& mesh, Workers& workers, const std::function<void(const std::vector<TetId>& order)>& look) {
+TetMesh extract_mesh(ConformingMesh&& mesh, Workers& workers, const std::function<void(std::span<const TetId> order)>& look) {
     TetMesh out;
     const TetStore& tets = mesh.tets();
     const ValidPlc& plc = mesh.plc();
     std::vector<std::uint32_t> number(mesh.vertex_slots(), kUnused);
     const auto in_output = [&](TetId t) { return tets.is_finite(t) && mesh.in_domain(t); };
-    const std::vector<TetId> order = number_output(mesh, workers, in_output, number, out);
+    const SharedArray<TetId> order = number_output(mesh, workers, in_output, number, out);
     return_freed_memory();
-    look(order);
+    look({order.data(), order.size()});
     mesh.triangulation().release_all_but_tets();
     const std::size_t count = order.size();
     reserve_on_huge_pages(out.tet_regions, count, workers);

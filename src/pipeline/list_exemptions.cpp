@@ -72,7 +72,7 @@ private:
 
 }  // namespace
 
-std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
+std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, std::span<const TetId> order, Refiner& refiner, const MeshOptions& options,
                                        std::uint32_t first_number, Workers& workers) {
     std::vector<Exemption> out;
     const ValidPlc& plc = mesh.plc();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
@@ -20,7 +21,7 @@ namespace wellmesh {
 /// The tetrahedra, in the order of the output, that miss a quality goal and touch an acute feature of the input, or lie in a gap that was left. Others
 /// that miss one are not excused.
 /// @param first_number  of vertices in the source's own counting.
-[[nodiscard]] std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, const std::vector<TetId>& order, Refiner& refiner, const MeshOptions& options,
+[[nodiscard]] std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, std::span<const TetId> order, Refiner& refiner, const MeshOptions& options,
                                                      std::uint32_t first_number, Workers& workers);
 
 /// Of the gaps that were left, and how many of the exemptions lie in them; nothing if none does.

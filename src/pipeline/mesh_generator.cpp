@@ -256,7 +256,7 @@ private:
         timed(Stage::extract, [&] {
             mesh.triangulation().release_scratch();
             return_freed_memory();
-            result_.mesh = extract_mesh(std::move(mesh), workers_, [&](const std::vector<TetId>& order) {
+            result_.mesh = extract_mesh(std::move(mesh), workers_, [&](std::span<const TetId> order) {
                 result_.exemptions = list_exemptions(mesh, order, refiner, options_, plc_.first_number, workers_);
                 result_.statistics.gaps = gaps_left(result_.exemptions, mesh, refiner, plc_.first_number);
             });
