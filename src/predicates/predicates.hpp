@@ -130,6 +130,7 @@ public:
 
 private:
     static Sign orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+    static Sign insphere_within_own_box(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
     static Sign insphere_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
     static Sign insphere_perturbed_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
 
