@@ -212,7 +212,7 @@ RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, Savepoint& last
         given_up_.insert(splitting_);
         last.go_back();
         refiner_.forget_waiting();
-        mending_.collect(workers_);
+        mending_.collect_again(workers_);
     }
     return RunGuard::Verdict::go_on;
 }
@@ -238,13 +238,13 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
         verdict = split_or_go_back(rung_cosine, *last);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
-    if (last && mesh_.tets().live() > kManyTets) mending_.collect(workers_);
+    if (last && mesh_.tets().live() > kManyTets) mending_.collect_again(workers_);
     reached = !below();
     if (reached) return verdict;
     const bool no_better = by_number ? last_left <= left().size() : last_worst <= worst_cosine();
     if (last && (no_better || guard_.has_too_many(mesh_.vertex_count()))) {
         last->go_back();
-        mending_.collect(workers_);
+        mending_.collect_again(workers_);
     }
     if (by_number) {
         for (const Bad& b : left())
@@ -286,7 +286,7 @@ RunGuard::Verdict ShapeImprover::try_afresh() {
         // A few less now and then is luck, and leaves what only another grading can do to the next try.
         if (worth_it(before, left().size()) && !guard_.has_too_many(mesh_.vertex_count())) continue;
         last.go_back();
-        mending_.collect(workers_);
+        mending_.collect_again(workers_);
         if (verdict == RunGuard::Verdict::go_on) verdict = grade_afresh();
     }
     mover_.move_beside_excused(false);

@@ -13,6 +13,8 @@ constexpr unsigned kTriesUntouched = 3;  // failures after which a tetrahedron r
 constexpr std::uint32_t kLastTime = 1U << 31;  // of the clock at the begin of a pass
 constexpr std::uint64_t kFailures = 200, kFailuresPerMended = 20;  // after which only one in so many is tried of what is mostly stuck:
 constexpr std::uint64_t kSample = 16;                               // elsewhere it may fare better
+/// To find one by its corners takes as long as a look at so many slots.
+constexpr std::size_t kSlotsADoubtful = 16;
 constexpr unsigned kTriesInAll = 4;      // smoothings around a tetrahedron, and last resorts, that failed: it waits for a split then
 
 }  // namespace
@@ -28,6 +30,8 @@ Mending Mending::for_zone(ConformingMesh& view, const TetJudge& judge, VertexMov
     out.touched_ = touched_.view();
     out.tried_ = tried_.view();
     out.known_ = &stuck_;
+    out.most_doubtful_ = most_doubtful_;
+    out.goes_beyond_shape = goes_beyond_shape;
     return out;
 }
 
@@ -39,6 +43,7 @@ void Mending::join(Mending& zone) {
     left_.insert(left_.end(), zone.left_.begin(), zone.left_.end());
     heap_.insert(heap_.end(), zone.heap_.begin(), zone.heap_.end());
     heap_.insert(heap_.end(), zone.outside_.begin(), zone.outside_.end());
+    if (doubtful_.size() <= most_doubtful_) doubtful_.insert(doubtful_.end(), zone.doubtful_.begin(), zone.doubtful_.end());
 }
 
 void Mending::fit_arrays() {
@@ -68,11 +73,19 @@ void Mending::forget_tries() {
     touched_.release();
 }
 
-/// Mostly it is found faster than the badness that it is not.
+/// Not certainly good: that is found faster than the badness, and says so of most. Only what is doubtful has an excuse, which may end.
+bool Mending::is_doubtful(TetId t) const {
+    return judge_.counts(t) && !(judge_.is_surely_good(t) && (!goes_beyond_shape || judge_.keeps_radius_edge(t)));
+}
+
 bool Mending::is_bad(TetId t, double& how) const {
-    if (!judge_.counts(t) || (!goes_beyond_shape && judge_.is_surely_good(t))) return false;
+    if (!is_doubtful(t)) return false;
     how = badness(t);
     return how > judge_.goal();
+}
+
+void Mending::note_doubtful(TetId t) {
+    if (doubtful_.size() <= most_doubtful_) doubtful_.push_back({mesh_.tets().corners(t), t});
 }
 
 Bad Mending::listed(TetId t, double how) const {
@@ -90,15 +103,27 @@ void Mending::collect(Workers& workers) {
     std::vector<std::vector<TetId>> suspects((slots + kGrain - 1) / kGrain);
     workers.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
         for (std::size_t i = begin; i < end; ++i) {
-            const TetId t{i};
-            if (!judge_.counts(t) || (judge_.is_surely_good(t) && (!goes_beyond_shape || judge_.keeps_radius_edge(t)))) continue;
-            suspects[piece].push_back(t);
+            if (const TetId t{i}; is_doubtful(t)) suspects[piece].push_back(t);
         }
     });
-    double how = 0;
+    doubtful_.clear();
+    most_doubtful_ = slots / kSlotsADoubtful;
     for (const std::vector<TetId>& piece : suspects)
-        for (const TetId t : piece)
-            if (is_bad(t, how)) left_.push_back(listed(t, how));
+        for (const TetId t : piece) {
+            note_doubtful(t);
+            if (const double how = badness(t); how > judge_.goal()) left_.push_back(listed(t, how));
+        }
+}
+
+void Mending::collect_again(Workers& workers) {
+    if (doubtful_.size() > most_doubtful_) return collect(workers);
+    heap_.clear();
+    left_.clear();
+    double how = 0;
+    for (const Doubtful& d : doubtful_)
+        if (const TetId t = find_tet(mesh_, d.corners, d.last); t.valid() && is_bad(t, how)) left_.push_back(listed(t, how));
+    std::sort(left_.begin(), left_.end(), [](const Bad& a, const Bad& b) { return a.last < b.last; });
+    left_.erase(std::unique(left_.begin(), left_.end(), [](const Bad& a, const Bad& b) { return a.last == b.last; }), left_.end());
 }
 
 void Mending::collect_touched() {
@@ -115,7 +140,9 @@ void Mending::touch(const std::vector<TetId>& tets) {
         if (!mesh_.tets().is_live(t)) continue;
         for (const VertexId v : mesh_.tets().corners(t))
             if (v != kInfiniteVertex) touched_[v.index()] = clock_;
-        if (!is_bad(t, how)) continue;
+        if (!is_doubtful(t)) continue;
+        note_doubtful(t);
+        if (how = badness(t); how <= judge_.goal()) continue;
         heap_.push_back(listed(t, how));
         std::push_heap(heap_.begin(), heap_.end(), IsLater{});
     }

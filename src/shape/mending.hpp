@@ -52,7 +52,10 @@ public:
     void forget_tries();
     /// All that is bad now, in left().
     void collect(Workers& workers);
-    /// The same, where only what touch() was told of has changed: left() is what it was and what has become bad since, as far as that is bad now.
+    /// The same, where only what touch() was told of has changed since, or went back to what it was, and the goal is what it was.
+    void collect_again(Workers& workers);
+    /// The same, but of what was good only that has become bad which touch() was told of: left() is what it was and what has become bad since, as far as that
+    /// is bad now.
     void collect_touched();
     /// Begins a pass: what is left waits again.
     void begin_pass();
@@ -110,7 +113,9 @@ private:
 
     Outcome mend(const Bad& bad, unsigned samples);
     [[nodiscard]] Stuck* find_stuck(std::uint64_t key);
+    [[nodiscard]] bool is_doubtful(TetId t) const;
     [[nodiscard]] bool is_bad(TetId t, double& how) const;
+    void note_doubtful(TetId t);
     [[nodiscard]] Bad listed(TetId t, double badness) const;
     void fit_arrays();
 
@@ -126,6 +131,13 @@ private:
     const std::unordered_map<std::uint64_t, Stuck>* known_ = nullptr;  // of a view: what the whole knew
     std::vector<Bad> heap_, left_;
     std::vector<Bad> outside_;  // of a view: left its zone
+    /// By corners, what was doubtful when all was collected, or is new since and was so then.
+    struct Doubtful {
+        TetStore::Corners corners{};
+        TetId last{};
+    };
+    std::vector<Doubtful> doubtful_;
+    std::size_t most_doubtful_ = 0;  // more take longer than a look at everything
 };
 
 }  // namespace wellmesh
