@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/rng.hpp"
 #include "core/vec3_math.hpp"
 
 namespace wellmesh {
@@ -22,11 +23,40 @@ double trilinear(const std::array<double, 8>& v, double x, double y, double z) {
 
 }  // namespace
 
+/// What was sampled last, by place: neighbours in a tree that is built depth first ask for the same samples, and a small table stays in the processor's cache.
+class SizeOctree::RecentSamples {
+public:
+    RecentSamples() : keys_(kSlots, kNone), values_(kSlots, 0) {}
+    /// @param sample  called if there is none for this key
+    template <class Sample>
+    double find(std::uint64_t key, Sample&& sample) {
+        std::size_t slot = mix64(key) % kSlots;
+        while (keys_[slot] != kNone && keys_[slot] != key) slot = (slot + 1) % kSlots;
+        if (keys_[slot] == key) return values_[slot];
+        const double value = sample();
+        if (++used_ > kSlots / 2) {
+            std::fill(keys_.begin(), keys_.end(), kNone);
+            used_ = 1;
+            slot = mix64(key) % kSlots;
+        }
+        keys_[slot] = key;
+        values_[slot] = value;
+        return value;
+    }
+
+private:
+    static constexpr std::size_t kSlots = std::size_t{1} << 15;
+    static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+    std::vector<std::uint64_t> keys_;
+    std::vector<double> values_;
+    std::size_t used_ = 0;
+};
+
 struct SizeOctree::Builder {
     SizeOctree& tree;
     const SizeSampling& sampling;
     const std::function<void(const Leaf&)>& on_leaf;
-    std::unordered_map<std::uint64_t, double> sampled{};  // only looked up
+    RecentSamples recent{};
 
     [[nodiscard]] Vec3 point(const At& at) const {
         const double unit = std::ldexp(tree.side_, -static_cast<int>(kMaxDepth));
@@ -34,9 +64,7 @@ struct SizeOctree::Builder {
     }
     double sample(const At& at) {
         const std::uint64_t key = (std::uint64_t{at[0]} << 42U) | (std::uint64_t{at[1]} << 21U) | at[2];
-        const auto [entry, is_new] = sampled.try_emplace(key, 0.0);
-        if (is_new) entry->second = std::min(sampling.edge_length(point(at)), tree.ceiling_);
-        return entry->second;
+        return recent.find(key, [&] { return std::min(sampling.edge_length(point(at)), tree.ceiling_); });
     }
     std::array<double, 8> sample_corners(const At& at, std::uint32_t width) {
         std::array<double, 8> values{};

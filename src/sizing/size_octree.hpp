@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "validation/box_tree.hpp"
@@ -56,6 +55,7 @@ private:
         std::uint32_t values = 0;       // of a leaf
     };
     using At = std::array<std::uint32_t, 3>;  // in units of the finest cell
+    class RecentSamples;
     struct Builder;
 
     Vec3 lo_;
