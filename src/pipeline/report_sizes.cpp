@@ -114,7 +114,7 @@ private:
             const std::int32_t region = mesh_.tet_regions[t];
             const double bound = kSizeTolerance * std::sqrt(sizes_.of(p, q, r, s, cell_of_.at(region)).max_squared_circumradius) * (1 + 1e-9);
             if (!(bound < std::numeric_limits<double>::infinity())) continue;
-            if (const double by = shape_of(p, q, r, s).circumradius / bound; by > 1) out[region].missed.push_back({by, t});
+            if (const double by = circumradius(p, q, r, s) / bound; by > 1) out[region].missed.push_back({by, t});
         }
     }
 

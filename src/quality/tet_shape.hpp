@@ -39,6 +39,12 @@ inline Vec3 scaled_circumcentre(const Vec3& u, const Vec3& v, const Vec3& w) {
     return squared_norm(u) * cross(v, w) + squared_norm(v) * cross(w, u) + squared_norm(w) * cross(u, v);
 }
 
+/// Infinite, or no number, for a flat tetrahedron.
+inline double circumradius(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const Vec3 u = b - a, v = c - a, w = d - a;
+    return norm(scaled_circumcentre(u, v, w)) / std::abs(2 * determinant(u, v, w));
+}
+
 /// Square of circumradius / shortest edge; infinite for a flat tetrahedron. No square root: compare it with the bound's square.
 inline double radius_edge_squared(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const Vec3 u = b - a, v = c - a, w = d - a;
