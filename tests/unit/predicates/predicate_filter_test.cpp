@@ -77,6 +77,9 @@ TEST(PredicateFilter, NeverErrsWithTheTightestBox) {
             ASSERT_EQ(filter.orient3d(a, b, c, d), orientation.sign);
             ASSERT_EQ(filter.insphere(a, b, c, d, e), side.sign);
             ASSERT_EQ(filter.insphere_perturbed(a, b, c, d, e), insphere_perturbed(a, b, c, d, e));
+            // The box of all points leaves it to that of these.
+            ASSERT_EQ(PredicateFilter().insphere(a, b, c, d, e), side.sign) << describe(q, family.name, i);
+            ASSERT_EQ(PredicateFilter().insphere_perturbed(a, b, c, d, e), insphere_perturbed(a, b, c, d, e)) << describe(q, family.name, i);
             const Padded padded[4] = {{a}, {b}, {c}, {d}};
             double value[4];
             const std::array<RecordNumbers, 1> corners{{{0, 1, 2, 3}}};

@@ -146,8 +146,11 @@ TEST(Relabel, WhatIsNotThereIsBroken) {
     const Sampled s = sample_of(staged, radius, false);
     std::vector<std::uint32_t> order;
     const std::size_t first = mesh.vertex_slots();
-    for (const BoundarySample::Point& p : s.sample.points) order.push_back(mesh.add_vertex(p.at, InsertionReason::boundary_by_size).value());
-    ASSERT_EQ(order.front(), first);
+    ASSERT_EQ(mesh.add_vertices(s.sample.points.size()), VertexId{first});
+    for (std::size_t k = 0; k < s.sample.points.size(); ++k) {
+        mesh.set_new_vertex(VertexId{first + k}, s.sample.points[k].at, InsertionReason::boundary_by_size);
+        order.push_back(VertexId{first + k}.value());
+    }
     mesh.insert_at_once(staged.workers, order);
     std::vector<Subsegment> segments = s.sample.segments;
     std::vector<Subface> faces = s.sample.faces;

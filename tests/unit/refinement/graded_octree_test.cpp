@@ -63,6 +63,34 @@ TEST(GradedOctree, UnusedLeavesHaveNoPoints) {
     EXPECT_EQ(lattice_of(tree).size(), 9U);
 }
 
+/// A used leaf leaves it to the first of its siblings to ask for what all of them need: also when that one is split before its turn.
+TEST(GradedOctree, UsedLeavesHaveNothingMuchCoarserBesideThem) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        GradedOctree tree({0, 0, 0}, 1);
+        split_all(tree, 1);
+        for (unsigned level = 0; level < 5; ++level)
+            for (const std::uint32_t i : leaves(tree))
+                if (mix64(seed, i) % 5 == 0) tree.split(i);
+        for (const std::uint32_t i : leaves(tree))
+            if (mix64(~seed, i) % 3 == 0) tree.use(i);
+        Workers workers(2);
+        tree.balance(workers);
+        LatticeLeaves used;
+        (void)tree.lattice(workers, used);
+        const auto all = leaves(tree);
+        for (const std::uint32_t i : all) {
+            if (used.of_node[i] == LatticeLeaves::kNone) continue;
+            const auto a = tree.box(i);
+            for (const std::uint32_t j : all) {
+                const auto b = tree.box(j);
+                const bool touch = a.lo.x <= b.lo.x + b.side && b.lo.x <= a.lo.x + a.side && a.lo.y <= b.lo.y + b.side && b.lo.y <= a.lo.y + a.side && a.lo.z <= b.lo.z + b.side &&
+                                   b.lo.z <= a.lo.z + a.side;
+                if (touch) { ASSERT_LE(b.side, 2 * a.side) << seed; }
+            }
+        }
+    }
+}
+
 TEST(GradedOctree, LeavesThatShareACornerDifferByOneLevelAtMost) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         GradedOctree tree({0, 0, 0}, 1);

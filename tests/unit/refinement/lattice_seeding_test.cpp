@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -223,6 +224,41 @@ TEST(LatticeSeeding, AllIsMadeAtOnceWhereNothingSpeaksAgainstIt) {
     MeshOptions limited = sized(0.04);
     limited.limits.max_vertices = 10'000'000;
     EXPECT_FALSE(seeded(cube(), limited, 1).at_once);
+}
+
+/// A layer too thin for a lattice, but not for two sides that know nothing of each other.
+TEST(LatticeSeeding, ALayerBesideThickGroundIsNoObstacle) {
+    Plc plc = cube_with_internal_facet();
+    for (Vec3& p : plc.vertices)
+        if (p.x > 1) p.x = 1 + 0.05 * (p.x - 1);
+    plc.region_seeds[1].point.x = 1.025;
+    const Seeded one = seeded(plc, sized(0.05), 1);
+    EXPECT_TRUE(one.at_once);
+    EXPECT_GT(one.seeds, 3000U);
+    // Its far side is as fine as the others: without that there were no vertices but those of its outline.
+    const auto beyond = std::count_if(one.points.begin(), one.points.end(), [](const Vec3& p) { return p.x > 1.049 && p.y > 0.01 && p.y < 0.99 && p.z > 0.01 && p.z < 0.99; });
+    EXPECT_GT(beyond, 200);
+}
+
+/// Pieces of segments that end in a larger ball would all have to be split one by one.
+TEST(LatticeSeeding, BallsAreNoLargerThanWhatIsAskedFor) {
+    const MeshOptions options = sized(0.04);
+    StagedMesh staged(wedge(60), options);
+    const std::vector<double> before = staged.boundary.acute().balls();
+    ASSERT_GT(*std::max_element(before.begin(), before.end()), 0.1);
+    staged.conform();
+    Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+    LatticeSeeder seeder(staged.mesh, staged.boundary, staged.guard, refiner.sizes(), staged.workers);
+    EXPECT_GT(seeder.seed(), 1000U);
+    EXPECT_TRUE(seeder.went_at_once());
+    EXPECT_EQ(staged.problem(false), "");
+    const double radius = kCircumradiusPerEdgeLength * 0.04;
+    for (std::size_t v = 0; v < before.size(); ++v) {
+        const double ball = staged.boundary.acute().ball_radius(VertexId{v});
+        EXPECT_LE(ball, 1.1 * radius);
+        EXPECT_EQ(ball > 0, before[v] > 0);
+        if (before[v] > 0) { EXPECT_EQ(std::ldexp(1, std::ilogb(before[v] / ball)), before[v] / ball) << "halved"; }
+    }
 }
 
 /// What is known would be there at once: a limit on memory is kept by insertion.

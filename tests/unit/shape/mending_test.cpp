@@ -8,7 +8,10 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
+#include <vector>
 
+#include "conforming/savepoint.hpp"
 #include "core/rng.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
@@ -109,6 +112,61 @@ TEST(Mending, WhatIsTouchedAgainAndAgainIsListedOnce) {
     EXPECT_TRUE(m.mending.pass(1, [](std::size_t) { return true; }));
     m.mending.end_pass();
     EXPECT_TRUE(m.mending.left().empty());
+}
+
+/// A look at what was doubtful, or is new since, finds what a look at everything does: after moves, after vertices were taken out, and when all that is undone.
+TEST(Mending, WhatIsCollectedAgainIsAllThatIsBad) {
+    MeshOptions options;
+    options.size.edge_length = 0.08;
+    StagedMesh staged(cube(), options);
+    staged.conform();
+    Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+    ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
+    TetJudge judge{staged.mesh, refiner.sizes(), refiner.max_radius_edge()};
+    VertexMover mover{staged.mesh, staged.boundary, judge, 1};
+    Mending mending{staged.mesh, judge, mover};
+    judge.set_goal(std::cos(20 * std::numbers::pi / 180), TetJudge::kNoAspect);
+    mending.badness = [&](TetId t) { return judge.shape_badness(t); };
+    mending.collect(staged.workers);
+    const std::size_t at_first = mending.left().size();
+    ASSERT_GT(at_first, 100U);
+    using Listed = std::vector<std::pair<std::uint32_t, double>>;
+    const auto listed = [&] {
+        Listed out;
+        for (const Bad& b : mending.left()) out.emplace_back(b.last.value(), b.badness);
+        return out;
+    };
+    const auto found_again = [&] {
+        mending.collect_again(staged.workers);
+        const Listed again = listed();
+        Mending anew{staged.mesh, judge, mover};
+        anew.badness = mending.badness;
+        anew.collect(staged.workers);
+        Listed all;
+        for (const Bad& b : anew.left()) all.emplace_back(b.last.value(), b.badness);
+        EXPECT_EQ(again, all);
+        return again.size();
+    };
+    EXPECT_EQ(found_again(), at_first);
+    // Worse than the goal is let pass, so that bad ones are made, too.
+    mending.last_resort = [&](const Bad&, const TetStore::Corners& order) {
+        if (!mover.remove(order[0], 0.999)) return false;
+        mending.touch(mover.changed());
+        return true;
+    };
+    std::size_t after_moves = 0;
+    {
+        Savepoint before(staged.mesh);
+        for (unsigned pass = 0; pass < 3; ++pass) {
+            mending.begin_pass();
+            ASSERT_TRUE(mending.pass(4, [](std::size_t) { return true; }));
+            mending.end_pass();
+            after_moves = found_again();
+        }
+        EXPECT_LT(after_moves, at_first);
+        before.go_back();
+    }
+    EXPECT_EQ(found_again(), at_first);
 }
 
 TEST(Mending, WhatWasTouchedIsCollectedOnce) {

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/vec3_math.hpp"
 #include "sizing/size_field.hpp"
@@ -119,6 +122,43 @@ TEST(Follows, FacetsSegmentsAndRegionsGetTheirSizes) {
     EXPECT_LT(coarse->asked, 0.3);
     EXPECT_NEAR(coarse->achieved, coarse->asked, 0.25 * coarse->asked);
     EXPECT_TRUE(find(result, "edge length / size (median)"));
+}
+
+/// Every edge of every region counts once, on any number of threads.
+TEST(Follows, TheReportMeasuresEachEdgeOnce) {
+    MeshOptions options;
+    options.size.gradation = 0;
+    options.size.entities = {{EntityKind::region, 2, 0.05}, {EntityKind::region, 1, 0.08}};
+    for (const unsigned threads : {1U, 2U}) {
+        options.threads = threads;
+        const MeshResult result = generate(cube_with_internal_facet(), options);
+        const TetMesh& mesh = result.mesh;
+        ASSERT_GT(mesh.vertices.size(), 10'000U);
+        std::map<std::int32_t, std::set<std::pair<std::uint32_t, std::uint32_t>>> edges;
+        for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+            for (std::size_t i = 0; i < 4; ++i)
+                for (std::size_t j = i + 1; j < 4; ++j) edges[mesh.tet_regions[t]].insert(std::minmax(mesh.tets[t][i], mesh.tets[t][j]));
+        ASSERT_EQ(edges.size(), 2U);
+        std::vector<double> all;
+        for (const auto& [region, some] : edges) {
+            const double asked = region == 2 ? 0.05 : 0.08;
+            double sum = 0;
+            for (const auto& [a, b] : some) {
+                sum += distance(mesh.vertices[a], mesh.vertices[b]);
+                all.push_back(distance(mesh.vertices[a], mesh.vertices[b]) / asked);
+            }
+            const AskedAchieved* row = find(result, "edge length (mean) in region " + std::to_string(region));
+            ASSERT_TRUE(row);
+            EXPECT_NEAR(row->asked, asked, 1e-12);
+            EXPECT_NEAR(row->achieved, sum / static_cast<double>(some.size()), 1e-12);
+            EXPECT_TRUE(row->met) << region;
+        }
+        const AskedAchieved* median = find(result, "edge length / size (median)");
+        ASSERT_TRUE(median);
+        const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+        std::nth_element(all.begin(), middle, all.end());
+        EXPECT_NEAR(median->achieved, *middle, 1e-12);
+    }
 }
 
 TEST(MinSize, IsKeptButWhereTheInputIsFiner) {

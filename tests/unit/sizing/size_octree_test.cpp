@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "core/infinity.hpp"
 #include "core/vec3_math.hpp"
@@ -57,6 +59,25 @@ TEST(SizeOctree, LeavesAreAsSmallAsTheSizesInThem) {
     EXPECT_LT(leaves, 3000U);
     EXPECT_EQ(tree({0.1, 0.1, 0.1}), 1.0);
     EXPECT_LT(tree({0.71, 0.72, 0.73}), 0.1);
+}
+
+/// More samples than are remembered: they are asked for again where the tree comes back to a place, which is seldom.
+TEST(SizeOctree, SamplesAreTakenAboutOnce) {
+    std::size_t calls = 0;
+    std::set<std::array<double, 3>> places;
+    const auto asked = [](const Vec3& p) { return 0.015 + 0.03 * p.x; };
+    const SizeOctree tree(unit_cube([&](const Vec3& p) {
+        ++calls;
+        places.insert({p.x, p.y, p.z});
+        return asked(p);
+    }));
+    EXPECT_GT(places.size(), 100'000U);
+    EXPECT_LT(static_cast<double>(calls), 1.5 * static_cast<double>(places.size()));
+    RandomPoints random(2);
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3 p = random.point();
+        ASSERT_NEAR(tree(p), asked(p), 1e-12);
+    }
 }
 
 TEST(SizeOctree, NothingAskedIsInfiniteAndPointsOutsideAreClamped) {
