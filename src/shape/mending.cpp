@@ -119,6 +119,9 @@ void Mending::collect_again(Workers& workers) {
     if (doubtful_.size() > most_doubtful_) return collect(workers);
     heap_.clear();
     left_.clear();
+    // Who went back to a savepoint took numbers of vertices away.
+    const auto is_vertex = [&](VertexId v) { return v.index() < mesh_.vertex_slots(); };
+    std::erase_if(doubtful_, [&](const Doubtful& d) { return !std::all_of(d.corners.begin(), d.corners.end(), is_vertex); });
     double how = 0;
     for (const Doubtful& d : doubtful_)
         if (const TetId t = find_tet(mesh_, d.corners, d.last); t.valid() && is_bad(t, how)) left_.push_back(listed(t, how));

@@ -161,7 +161,7 @@ TEST(Mending, WhatIsCollectedAgainIsAllThatIsBad) {
             for (std::uint64_t k = 0; k < 40; ++k) {
                 const auto in_the_middle = [&](std::uint64_t axis) { return 0.3 + 0.4 * unit_double(mix64(40 * pass + k, axis)); };
                 Cavity cavity;
-                ASSERT_TRUE(staged.mesh.triangulation().find_conflict_cavity({in_the_middle(0), in_the_middle(1), in_the_middle(2)}, TetId{}, cavity));
+                ASSERT_TRUE(staged.mesh.triangulation().find_conflict_cavity({in_the_middle(0), in_the_middle(1), in_the_middle(2)}, staged.mesh.triangulation().tet_of(VertexId{0}), cavity));
                 (void)staged.mesh.insert(cavity, Placement::in_cell(staged.mesh.cell(cavity.tets[0])), {});
                 mending.touch(staged.mesh.triangulation().new_tets());
             }
