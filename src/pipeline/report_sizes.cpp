@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "core/shared_array.hpp"
 #include "core/vec3_math.hpp"
 #include "quality/tet_shape.hpp"
 #include "validation/local_feature_size.hpp"
@@ -37,6 +38,7 @@ public:
     };
 
     EdgeLists(const TetMesh& mesh, Workers& workers) : first_(mesh.vertices.size() + 1, 0) {
+        const bool alone = workers.threads() == 1;
         const auto for_edges = [&](auto&& use) {
             workers.for_ranges(mesh.tets.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t) {
                 for (std::size_t t = begin; t < end; ++t)
@@ -44,10 +46,10 @@ public:
                         for (std::size_t j = i + 1; j < 4; ++j) use(std::min(mesh.tets[t][i], mesh.tets[t][j]), std::max(mesh.tets[t][i], mesh.tets[t][j]), mesh.tet_regions[t]);
             });
         };
-        const auto add_one = [](std::size_t& counter) { return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed); };
+        const auto add_one = [alone](std::size_t& counter) { return alone ? counter++ : std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed); };
         for_edges([&](std::uint32_t low, std::uint32_t, std::int32_t) { add_one(first_[low + 1]); });
         std::partial_sum(first_.begin(), first_.end(), first_.begin());
-        edges_.resize(first_.back());
+        edges_.resize_as_is(first_.back());
         std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
         for_edges([&](std::uint32_t low, std::uint32_t high, std::int32_t region) { edges_[add_one(next[low])] = {high, region}; });
     }
@@ -61,7 +63,7 @@ public:
 
 private:
     std::vector<std::size_t> first_;  // edges of a vertex begin there and end where the next one's begin
-    std::vector<Edge> edges_;
+    SharedArray<Edge> edges_;
 };
 
 class SizeReport {
@@ -119,15 +121,21 @@ private:
     }
 
     void report_lengths() {
-        EdgeLists edges(mesh_, workers_);
         std::vector<Lengths> lengths((mesh_.vertices.size() + kGrain - 1) / kGrain);
-        workers_.for_ranges(mesh_.vertices.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) { measure(edges, begin, end, lengths[piece]); });
+        {
+            EdgeLists edges(mesh_, workers_);
+            workers_.for_ranges(mesh_.vertices.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) { measure(edges, begin, end, lengths[piece]); });
+        }
         std::vector<Regions> missed((mesh_.tets.size() + kGrain - 1) / kGrain);
         workers_.for_ranges(mesh_.tets.size(), kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) { list_missed(begin, end, missed[piece]); });
         Regions regions;
         std::vector<double> ratios;
-        for (const Lengths& l : lengths) {
+        std::size_t count = 0;
+        for (const Lengths& l : lengths) count += l.ratios.size();
+        ratios.reserve(count);
+        for (Lengths& l : lengths) {
             ratios.insert(ratios.end(), l.ratios.begin(), l.ratios.end());
+            std::vector<double>().swap(l.ratios);
             for (const auto& [region, here] : l.regions) {
                 Region& r = regions[region];
                 r.asked += here.asked;

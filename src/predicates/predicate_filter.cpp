@@ -40,7 +40,6 @@ Sign PredicateFilter::orient3d_beyond_filter(const Vec3& a, const Vec3& b, const
     if ((a.x == b.x && a.x == c.x && a.x == d.x) || (a.y == b.y && a.y == c.y && a.y == d.y) || (a.z == b.z && a.z == c.z && a.z == d.z)) return Sign::zero;
     return wellmesh::orient3d(a, b, c, d);
 }
-/// By the bound for a box about these points only, which in a fine mesh is far smaller than that for all: zero if it can't tell.
 Sign PredicateFilter::insphere_within_own_box(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e) {
     const auto farthest = [&](double Vec3::*axis) {
         return std::max(std::max(std::fabs(a.*axis - e.*axis), std::fabs(b.*axis - e.*axis)), std::max(std::fabs(c.*axis - e.*axis), std::fabs(d.*axis - e.*axis)));

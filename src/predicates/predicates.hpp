@@ -29,8 +29,8 @@ namespace wellmesh {
 /// How often this thread has gone as far as expansion arithmetic so far. Take differences: nothing ever resets it.
 [[nodiscard]] std::uint64_t exact_predicate_calls() noexcept;
 
-/// Static filter: error bounds for all points of one bounding box. Decides most calls by one comparison; the others go
-/// down the ladder, so that every answer is the exact one.
+/// Static filter: error bounds for all points of one bounding box. Decides most calls by one comparison. Insphere tests that it leaves open are mostly decided by the
+/// bound for the points' own box; the others go down the ladder, so that every answer is the exact one.
 class PredicateFilter {
 public:
     PredicateFilter() = default;  ///< bounds that never decide
@@ -118,6 +118,9 @@ public:
         return wellmesh::side_of_equatorial_sphere(a, b, c, p);
     }
 
+    /// What the bound for a box about these points only tells, which in a fine mesh is far smaller than that for all: zero if nothing.
+    [[nodiscard]] static Sign insphere_within_own_box(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
+
     [[nodiscard]] double orient3d_bound() const { return orient3d_bound_; }  ///< for tests
     [[nodiscard]] double insphere_bound() const { return insphere_bound_; }  ///< for tests
     [[nodiscard]] double power_bound() const { return power_bound_; }        ///< for tests
@@ -130,7 +133,6 @@ public:
 
 private:
     static Sign orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
-    static Sign insphere_within_own_box(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
     static Sign insphere_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
     static Sign insphere_perturbed_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e);
 

@@ -63,7 +63,8 @@ LatticeSeeder::LatticeSeeder(ConformingMesh& view, BoundaryRefiner& boundary, co
       radius_(whole.radius_),
       spacing_(whole.spacing_),
       boundary_radius_(whole.boundary_radius_),
-      is_thin_(whole.is_thin_) {}
+      is_thin_(whole.is_thin_),
+      is_sampled_(whole.is_sampled_) {}
 
 LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, RunGuard& guard, const SizeField& sizes, Workers& workers)
     : mesh_(mesh),
@@ -74,7 +75,8 @@ LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, Ru
       radius_(mesh.plc().cells.size(), kInfinity),
       spacing_(radius_.size(), kInfinity),
       boundary_radius_(radius_.size(), kInfinity),
-      is_thin_(radius_.size(), 0) {
+      is_thin_(radius_.size(), 0),
+      is_sampled_(radius_.size(), 0) {
     std::vector<double> surface(radius_.size(), 0);
     for (const ValidFacet& f : mesh.plc().facets) {
         double area = 0;
@@ -94,7 +96,8 @@ LatticeSeeder::LatticeSeeder(ConformingMesh& mesh, BoundaryRefiner& boundary, Ru
         // Where sizes vary the finest decide whether the cell is thick: a lattice that has no room keeps away from the boundary by itself.
         const double finest = sizes.varies() ? std::min(radius_[c], kCircumradiusPerEdgeLength * sizes.smallest()) : radius_[c];
         is_thin_[c] = !(mesh.plc().cells[c].volume >= kLeastThickness * (kLatticeScale * finest / kLatticeCircumradius) * surface[c]);
-        if (is_thin_[c] == 0 || 2 * mesh.plc().cells[c].volume >= kLeastGap * finest * surface[c]) boundary_radius_[c] = radius_[c];
+        is_sampled_[c] = is_thin_[c] == 0 || 2 * mesh.plc().cells[c].volume >= kLeastGap * finest * surface[c];
+        boundary_radius_[c] = radius_[c];
         if (is_thin_[c] != 0) radius_[c] = spacing_[c] = kInfinity;
     }
 }
@@ -105,8 +108,9 @@ double LatticeSeeder::radius_at(const Vec3& p, CellId c) const {
 }
 
 double LatticeSeeder::boundary_radius_at(const Vec3& p, CellId c) const {
+    if (is_sampled_[c.index()] == 0) return kInfinity;
     const double most = boundary_radius_[c.index()];
-    return sizes_.varies() && most < kInfinity ? std::min(most, kCircumradiusPerEdgeLength * sizes_.edge_length(p, c)) : most;
+    return sizes_.varies() ? std::min(most, kCircumradiusPerEdgeLength * sizes_.edge_length(p, c)) : most;
 }
 
 double LatticeSeeder::spacing_at(const Vec3& p, CellId c) const {

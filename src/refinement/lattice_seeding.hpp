@@ -145,8 +145,9 @@ private:
     bool went_at_once_ = false;
     std::vector<double> radius_;   // by cell: circumradius bound that is the same all over it; infinite: none
     std::vector<double> spacing_;  // by cell: lattice constant of that
-    std::vector<double> boundary_radius_;  // by cell: the same where only its boundary is to be as fine as that, too
-    std::vector<char> is_thin_;    // by cell: no lattice in it
+    std::vector<double> boundary_radius_;  // by cell: the same, also where there is no lattice
+    std::vector<char> is_thin_;     // by cell: no lattice in it
+    std::vector<char> is_sampled_;  // by cell: its boundary is to be as fine as its size wants it
     bool tets_are_numbered_ = false;  // by what does not depend on threads
     std::optional<Savepoint> last_;    // of splitting the boundary
     std::uint64_t left_at_last_ = 0;  // vertices

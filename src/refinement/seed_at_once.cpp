@@ -116,7 +116,7 @@ double LatticeSeeder::vertices_at_acute_segments() const {
         double radius = kInfinity;
         for (const FacetId facet : s.facets)
             for (const CellId c : mesh_.plc().facets[facet.index()].cells)
-                if (mesh_.is_filled(c)) radius = std::min(radius, radius_at(0.5 * (a + b), c));
+                if (mesh_.is_filled(c)) radius = std::min(radius, boundary_radius_at(0.5 * (a + b), c));
         sum += distance(a, b) / radius / std::sin(f.angle_deg / 2 * std::numbers::pi / 180);
     }
     return sum;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -20,7 +21,7 @@ constexpr unsigned kRemovalRounds = 3;    // of which later ones take nothing ou
 constexpr double kVertexBudget = 1.5;     // splits may not add more than half the vertices again,
 constexpr std::size_t kVertexAllowance = 100;  // and so many on small meshes
 constexpr std::uint64_t kCascadeCeiling = 2, kCascadeAllowance = 10000;  // beyond the budget; more is a cascade beside an acute angle
-constexpr std::size_t kManyTets = 200000; // of a mesh that is looked at as a whole once a rung, not after each round of splits
+constexpr std::size_t kManyTets = 200000; // of a mesh that is not looked at as a whole after each round of splits
 constexpr unsigned kMostCascades = 16;    // that are undone, one tetrahedron each given up, before a round of splits is
 constexpr unsigned kLastTries = 5;
 constexpr double kRungDeg = 5;
@@ -35,6 +36,24 @@ constexpr double kSmoothingFloor = 0.8;
 bool worth_it(std::size_t before, std::size_t after) { return static_cast<double>(after) <= kWorthRepeating * static_cast<double>(before); }
 
 double cosine_of_degrees(double degrees) { return std::cos(degrees * (std::numbers::pi / 180)); }
+
+/// Repairs of facets may give tetrahedra that are as they were another cell.
+class NotingRepairs {
+public:
+    NotingRepairs(BoundaryRefiner& boundary, Mending& mending) : hook_(boundary.on_repair), before_(hook_) {
+        hook_ = [this, &mending](const std::vector<TetId>& tets) {
+            mending.note(tets);
+            if (before_) before_(tets);
+        };
+    }
+    ~NotingRepairs() { hook_ = std::move(before_); }
+    NotingRepairs(const NotingRepairs&) = delete;
+    NotingRepairs& operator=(const NotingRepairs&) = delete;
+
+private:
+    std::function<void(const std::vector<TetId>&)>& hook_;
+    std::function<void(const std::vector<TetId>&)> before_;
+};
 
 }  // namespace
 
@@ -171,6 +190,7 @@ RunGuard::Verdict ShapeImprover::settle(LastResort last_resort) {
 
 /// Splits what is worse than this: of neighbours only the worst, as moves may mend the others then.
 RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
+    const NotingRepairs noting(boundary_, mending_);
     std::sort(left().begin(), left().end(), [](const Bad& a, const Bad& b) { return b < a; });
     const std::uint32_t stamp = new_stamp();
     const std::size_t first_new = mesh_.vertex_slots();
@@ -200,7 +220,7 @@ RunGuard::Verdict ShapeImprover::split_worse_than(double cosine) {
 
 /// The same, but a split that sets off a cascade at acute input, which ends at the algorithm's ceiling or where segments can't be split any further, is
 /// undone with all others since `last`; they are tried again, but for that one.
-RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, Savepoint& last) {
+RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, Retreat& last) {
     for (unsigned cascades = 0; cascades < kMostCascades; ++cascades) {
         RunGuard::Verdict verdict = RunGuard::Verdict::out_of_vertices;
         try {
@@ -212,7 +232,7 @@ RunGuard::Verdict ShapeImprover::split_or_go_back(double cosine, Savepoint& last
         given_up_.insert(splitting_);
         last.go_back();
         refiner_.forget_waiting();
-        mending_.collect_again(workers_);
+        last.collect(workers_);
     }
     return RunGuard::Verdict::go_on;
 }
@@ -223,7 +243,7 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
     const auto below = [&] { return std::any_of(left().begin(), left().end(), is_below); };
     // Beside what an acute angle forces some tetrahedra stay for ever, which says nothing about the others.
     const bool by_number = refiner_.may_excuse();
-    std::optional<Savepoint> last;
+    std::optional<Retreat> last;
     double last_worst = 0;
     std::size_t last_left = 0;
     RunGuard::Verdict verdict = RunGuard::Verdict::go_on;
@@ -231,20 +251,22 @@ RunGuard::Verdict ShapeImprover::climb(double rung_cosine, std::size_t vertices_
         const bool spent = static_cast<double>(mesh_.vertex_count()) > kVertexBudget * static_cast<double>(vertices_at_start) + kVertexAllowance;
         if (spent || round == kSplitRounds || (!last && !guard_.can_double())) break;
         if (!last) {
-            last.emplace(mesh_);
+            last.emplace(mesh_, mending_);
             if (!by_number) last_worst = worst_cosine();
             last_left = left().size();
         }
         verdict = split_or_go_back(rung_cosine, *last);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(round < kRemovalRounds ? LastResort::remove_or_insert : LastResort::insert);
     }
-    if (last && mesh_.tets().live() > kManyTets) mending_.collect_again(workers_);
+    // A split that the guard stopped is told to nobody.
+    if (last && verdict != RunGuard::Verdict::go_on) mending_.collect(workers_);
+    else if (last && mesh_.tets().live() > kManyTets) mending_.collect_again(workers_);
     reached = !below();
     if (reached) return verdict;
     const bool no_better = by_number ? last_left <= left().size() : last_worst <= worst_cosine();
     if (last && (no_better || guard_.has_too_many(mesh_.vertex_count()))) {
         last->go_back();
-        mending_.collect_again(workers_);
+        last->collect(workers_);
     }
     if (by_number) {
         for (const Bad& b : left())
@@ -279,14 +301,14 @@ RunGuard::Verdict ShapeImprover::try_afresh() {
         verdict = smooth_around_bad(2);
         if (verdict == RunGuard::Verdict::go_on) verdict = passes(kPatientMoveSamples << (r + 1), kPatientPasses, LastResort::remove_or_insert);
         if (verdict != RunGuard::Verdict::go_on || left().empty() || !guard_.can_double()) continue;
-        Savepoint last(mesh_);
+        Retreat last(mesh_, mending_);
         const std::size_t before = left().size();
         verdict = split_or_go_back(judge_.goal(), last);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
         // A few less now and then is luck, and leaves what only another grading can do to the next try.
         if (worth_it(before, left().size()) && !guard_.has_too_many(mesh_.vertex_count())) continue;
         last.go_back();
-        mending_.collect_again(workers_);
+        last.collect(workers_);
         if (verdict == RunGuard::Verdict::go_on) verdict = grade_afresh();
     }
     mover_.move_beside_excused(false);

@@ -40,6 +40,7 @@ class ShapeImprover {
 public:
     ShapeImprover(ConformingMesh& mesh, BoundaryRefiner& boundary, Refiner& refiner, RunGuard& guard, Workers& workers, std::uint64_t seed)
         : mesh_(mesh),
+          boundary_(boundary),
           refiner_(refiner),
           guard_(guard),
           workers_(workers),
@@ -81,7 +82,24 @@ private:
     RunGuard::Verdict thin_out(std::size_t first_new, std::size_t enough);
     RunGuard::Verdict climb(double rung_cosine, std::size_t vertices_at_start, bool& reached);
     RunGuard::Verdict split_worse_than(double cosine);
-    RunGuard::Verdict split_or_go_back(double cosine, Savepoint& last);
+    /// A savepoint, and what is bad after going back to it.
+    class Retreat {
+    public:
+        Retreat(ConformingMesh& mesh, Mending& mending) : savepoint_(mesh), mending_(mending), collections_(mending.collections()) {}
+        void go_back() { savepoint_.go_back(); }
+        /// @pre go_back()
+        void collect(Workers& workers) {
+            if (mending_.collections() == collections_) mending_.collect_again(workers);
+            else mending_.collect(workers);  // what was looked at meanwhile says nothing of the mesh that is back
+            collections_ = mending_.collections();
+        }
+
+    private:
+        Savepoint savepoint_;
+        Mending& mending_;
+        std::uint64_t collections_;  // when it began
+    };
+    RunGuard::Verdict split_or_go_back(double cosine, Retreat& last);
     RunGuard::Verdict try_afresh();
     RunGuard::Verdict grade_afresh();
     [[nodiscard]] double badness_of(TetId t);
@@ -92,6 +110,7 @@ private:
     [[nodiscard]] double worst_cosine() const;
 
     ConformingMesh& mesh_;
+    BoundaryRefiner& boundary_;
     Refiner& refiner_;
     RunGuard& guard_;
     Workers& workers_;

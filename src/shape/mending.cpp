@@ -106,6 +106,7 @@ void Mending::collect(Workers& workers) {
             if (const TetId t{i}; is_doubtful(t)) suspects[piece].push_back(t);
         }
     });
+    ++collections_;
     doubtful_.clear();
     most_doubtful_ = slots / kSlotsADoubtful;
     for (const std::vector<TetId>& piece : suspects)
@@ -127,6 +128,11 @@ void Mending::collect_again(Workers& workers) {
         if (const TetId t = find_tet(mesh_, d.corners, d.last); t.valid() && is_bad(t, how)) left_.push_back(listed(t, how));
     std::sort(left_.begin(), left_.end(), [](const Bad& a, const Bad& b) { return a.last < b.last; });
     left_.erase(std::unique(left_.begin(), left_.end(), [](const Bad& a, const Bad& b) { return a.last == b.last; }), left_.end());
+}
+
+void Mending::note(const std::vector<TetId>& tets) {
+    for (const TetId t : tets)
+        if (mesh_.tets().is_live(t) && is_doubtful(t)) note_doubtful(t);
 }
 
 void Mending::collect_touched() {

@@ -52,11 +52,15 @@ public:
     void forget_tries();
     /// All that is bad now, in left().
     void collect(Workers& workers);
-    /// The same, where only what touch() was told of has changed since, or went back to what it was, and the goal is what it was.
+    /// The same, by what was doubtful then and what has become so since. @pre since collect() the goal is what it was, and only that has changed which touch() or
+    /// note() was told of, or has gone back to what it was; but not to what it was before collect()
     void collect_again(Workers& workers);
-    /// The same, but of what was good only that has become bad which touch() was told of: left() is what it was and what has become bad since, as far as that
-    /// is bad now.
+    /// left() is what it was and what touch() has found bad since, as far as that is bad now: what has lost an excuse without being touched is not looked at.
     void collect_touched();
+    /// How often collect() has looked at all.
+    [[nodiscard]] std::uint64_t collections() const { return collections_; }
+    /// Tetrahedra that are as they were, but in another cell.
+    void note(const std::vector<TetId>& tets);
     /// Begins a pass: what is left waits again.
     void begin_pass();
     /// Goes on until nothing waits. @return false: it was not to go on
@@ -138,6 +142,7 @@ private:
     };
     std::vector<Doubtful> doubtful_;
     std::size_t most_doubtful_ = 0;  // more take longer than a look at everything
+    std::uint64_t collections_ = 0;
 };
 
 }  // namespace wellmesh

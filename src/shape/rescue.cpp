@@ -73,7 +73,7 @@ RunGuard::Verdict ShapeImprover::grade_afresh() {
         mending_.collect(workers_);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
         if (left().empty() || verdict != RunGuard::Verdict::go_on) break;
-        Savepoint settled(mesh_);
+        Retreat settled(mesh_, mending_);
         verdict = split_or_go_back(judge_.goal(), settled);
         if (verdict == RunGuard::Verdict::go_on) verdict = settle(LastResort::insert);
     }

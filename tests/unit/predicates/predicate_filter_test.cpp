@@ -61,7 +61,7 @@ TEST(PredicateFilter, RecordsComputeTheSamePolynomial) {
 }
 
 TEST(PredicateFilter, NeverErrsWithTheTightestBox) {
-    int cases = 0, orient3d_decided = 0, insphere_decided = 0;
+    int cases = 0, orient3d_decided = 0, insphere_decided = 0, own_decided = 0;
     std::uint64_t stream = 200;
     for (const Family& family : kFamilies) {
         ++stream;
@@ -78,6 +78,9 @@ TEST(PredicateFilter, NeverErrsWithTheTightestBox) {
             ASSERT_EQ(filter.insphere(a, b, c, d, e), side.sign);
             ASSERT_EQ(filter.insphere_perturbed(a, b, c, d, e), insphere_perturbed(a, b, c, d, e));
             // The box of all points leaves it to that of these.
+            const Sign own = PredicateFilter::insphere_within_own_box(a, b, c, d, e);
+            ASSERT_TRUE(own == Sign::zero || own == side.sign) << describe(q, family.name, i);
+            own_decided += own != Sign::zero;
             ASSERT_EQ(PredicateFilter().insphere(a, b, c, d, e), side.sign) << describe(q, family.name, i);
             ASSERT_EQ(PredicateFilter().insphere_perturbed(a, b, c, d, e), insphere_perturbed(a, b, c, d, e)) << describe(q, family.name, i);
             const Padded padded[4] = {{a}, {b}, {c}, {d}};
@@ -94,6 +97,7 @@ TEST(PredicateFilter, NeverErrsWithTheTightestBox) {
     }
     EXPECT_GT(orient3d_decided, cases / 4);
     EXPECT_GT(insphere_decided, cases / 4);
+    EXPECT_GT(own_decided, cases / 4);
 }
 
 /// What the kernel sees: neighbouring points, as far apart as in a mesh of 100,000 points. (Random quintuples of them are far

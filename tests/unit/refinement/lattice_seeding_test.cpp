@@ -218,6 +218,10 @@ TEST(LatticeSeeding, FacetsTooNearToEachOtherAreNotMadeAtOnce) {
 
 TEST(LatticeSeeding, AllIsMadeAtOnceWhereNothingSpeaksAgainstIt) {
     for (const NamedPlc& named : all_synthetic_plcs()) EXPECT_TRUE(seeded(named.plc, sized(0.04 * diagonal(named.plc)), 2).at_once) << named.name;
+    // Whoever asks for the size.
+    MeshOptions by_field;
+    by_field.size.at = [](const Vec3& p) { return 0.04 + 0.02 * p.x; };
+    EXPECT_TRUE(seeded(cube(), by_field, 1).at_once);
     // A few vertices beside acute angles are no matter, many are.
     EXPECT_TRUE(seeded(wedge(45), sized(0.05), 1).at_once);
     EXPECT_FALSE(seeded(wedge(20), sized(0.05), 1).at_once);

@@ -173,6 +173,7 @@ TEST(Mending, WhatIsCollectedAgainIsAllThatIsBad) {
         EXPECT_GT(new_ones, 10U);
         before.go_back();
     }
+    EXPECT_EQ(mending.collections(), 1U) << "who looked at all in between would know nothing of the mesh that is back";
     EXPECT_EQ(found_again(), at_first);
 }
 
