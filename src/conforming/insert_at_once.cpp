@@ -16,6 +16,30 @@ namespace {
 
 constexpr std::size_t kSlotsAPiece = std::size_t{1} << 14;
 
+/// The carrier of a vertex, which tells of most edges and faces that they are none of the boundary.
+class Place {
+public:
+    Place() = default;
+    explicit Place(const VertexInfo& info) : packed_(info.carrier_id << 2 | static_cast<std::uint32_t>(info.carrier)) {}
+    [[nodiscard]] bool is(CarrierKind kind) const { return (packed_ & 3U) == static_cast<std::uint32_t>(kind); }
+    [[nodiscard]] bool is_inside() const { return is(CarrierKind::region); }
+    friend bool operator==(const Place&, const Place&) = default;
+
+private:
+    std::uint32_t packed_ = static_cast<std::uint32_t>(CarrierKind::region);
+};
+
+bool may_be_on_segment(const Place& a, const Place& b) {
+    if (a.is(CarrierKind::segment) && b.is(CarrierKind::segment)) return a == b;
+    return (a.is(CarrierKind::segment) || a.is(CarrierKind::input_vertex)) && (b.is(CarrierKind::segment) || b.is(CarrierKind::input_vertex));
+}
+
+bool may_be_on_facet(const Place& a, const Place& b, const Place& c) {
+    if (a.is_inside() || b.is_inside() || c.is_inside()) return false;
+    const auto differ = [](const Place& p, const Place& q) { return p.is(CarrierKind::facet) && q.is(CarrierKind::facet) && p != q; };
+    return !differ(a, b) && !differ(b, c) && !differ(c, a);
+}
+
 }  // namespace
 
 VertexId ConformingMesh::add_vertices(std::size_t n) {
@@ -54,14 +78,10 @@ void ConformingMesh::relabel(Workers& workers, std::span<const Subsegment> segme
     const CornerTable<3> face_at(workers, faces.size(), [&](std::size_t i) { return faces[i].corners; });
     std::vector<std::uint8_t> has_segment(segments.size(), 0), has_face(faces.size(), 0);
     const auto mark = [](std::uint8_t& m) { std::atomic_ref<std::uint8_t>(m).store(1, std::memory_order_relaxed); };
-    // Most tetrahedra have no face on the boundary: a byte a vertex tells.
-    enum Place : std::uint8_t { kInside, kOnFacet, kOnSegment };
-    std::vector<Place> place(info_.size());
+    SharedArray<Place> place;
+    place.resize_as_is(info_.size());
     workers.for_ranges(place.size(), kSlotsAPiece, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v) {
-            const CarrierKind carrier = info_[v].carrier;
-            place[v] = carrier == CarrierKind::region ? kInside : carrier == CarrierKind::facet ? kOnFacet : kOnSegment;
-        }
+        for (std::size_t v = begin; v < end; ++v) place[v] = Place(info_[v]);
     });
     struct Labelled {
         TetId t;
@@ -77,15 +97,15 @@ void ConformingMesh::relabel(Workers& workers, std::span<const Subsegment> segme
             std::array<Place, 4> at{};
             unsigned on_boundary = 0;
             for (unsigned k = 0; k < 4; ++k) {
-                at[k] = c[k] == kInfiniteVertex ? kInside : place[c[k].index()];
-                on_boundary += at[k] != kInside;
+                if (c[k] != kInfiniteVertex) at[k] = place[c[k].index()];
+                on_boundary += at[k].is_inside() ? 0U : 1U;
             }
             if (on_boundary < 2) continue;
             TetLabels labels;
             bool any = false;
             for (unsigned e = 0; e < 6; ++e) {
                 const auto [j, k] = kEdgeCorners[e];
-                if (at[j] != kOnSegment || at[k] != kOnSegment) continue;
+                if (!may_be_on_segment(at[j], at[k])) continue;
                 const std::uint32_t s = segment_at.find({c[j], c[k]});
                 if (s == segment_at.kNone) continue;
                 labels.segments[e] = segments[s].segment;
@@ -93,7 +113,7 @@ void ConformingMesh::relabel(Workers& workers, std::span<const Subsegment> segme
                 any = true;
             }
             for (unsigned f = 0; f < 4 && on_boundary > 2; ++f) {
-                if (at[(f + 1) % 4] == kInside || at[(f + 2) % 4] == kInside || at[(f + 3) % 4] == kInside) continue;
+                if (!may_be_on_facet(at[(f + 1) % 4], at[(f + 2) % 4], at[(f + 3) % 4])) continue;
                 const std::uint32_t s = face_at.find({c[(f + 1) % 4], c[(f + 2) % 4], c[(f + 3) % 4]});
                 if (s == face_at.kNone) continue;
                 labels.facets[f] = faces[s].facet;
