@@ -45,7 +45,10 @@ class Runs:
         return {"tets": data["tets"], "seconds": seconds, "met": result.code == 0, "in_time": data["termination"] != "time_budget_reached", "statistics": data["statistics"]}
 
     def size_for(self, model):
-        size = diagonal(points_of(model)) / 60
+        try:
+            size = diagonal(points_of(model)) / 60
+        except (ValueError, IndexError, OSError) as reason:
+            raise NoMesh(f"can't be read: {reason}") from reason
         for _ in range(ROUNDS):
             row = self.once(model, size, 1, 0)
             if not row["in_time"]:
