@@ -73,8 +73,8 @@ public:
     /// Makes every segment a chain of edges and every facet a union of faces, then finds the cell of every tetrahedron.
     /// @throws MeshError{budget_exhausted, cancelled, unsupported_acute}
     void recover_all();
-    /// The same after relabel(): recovers what is broken, then finds all cells.
-    void recover_broken(Workers& workers);
+    /// The same after relabel(): recovers what is broken, then finds all cells. @return false, half way, if that takes more vertices than `most`
+    [[nodiscard]] bool recover_broken(Workers& workers, std::size_t most = std::numeric_limits<std::size_t>::max());
     /// Splits until nothing is encroached; recovers what splits destroyed. @throws as recover_all does.
     void conform();
     /// Splits at most one subsegment or subface. @return false if none is waiting.
@@ -151,7 +151,7 @@ private:
     void recover_segments();
     [[nodiscard]] TetFace sole_triangle(FacetId f);
     bool recover_facet(FacetId f);
-    void recover_facets(std::vector<FacetId> todo);
+    bool recover_facets(std::vector<FacetId> todo, std::size_t most);
     void repair_broken();
     void refresh_cells();
     void find_all_cells();

@@ -5,6 +5,7 @@
 // triangle of it that is no face of the mesh is split at its circumcentre. Where four or more vertices are nearly cocircular
 // the two triangulations may legally choose other diagonals; then faces of the mesh are found that cover the same polygon.
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -140,29 +141,34 @@ void BoundaryRefiner::recover_all() {
     recover_segments();
     std::vector<FacetId> todo;
     for (std::size_t i = 0; i < mesh_.plc().facets.size(); ++i) todo.push_back(FacetId{i});
-    recover_facets(std::move(todo));
+    (void)recover_facets(std::move(todo), std::numeric_limits<std::size_t>::max());
     find_all_cells();
 }
 
-void BoundaryRefiner::recover_broken(Workers& workers) {
+bool BoundaryRefiner::recover_broken(Workers& workers, std::size_t most) {
     drain_segments();
-    recover_facets(mesh_.take_broken_facets());
+    if (!recover_facets(mesh_.take_broken_facets(), most)) return false;
     mesh_.find_cells_by_vertices(workers);
-    if (classify_again(mesh_, mesh_.take_forgotten()) && enqueue_all_encroached(workers)) return;
+    if (classify_again(mesh_, mesh_.take_forgotten()) && enqueue_all_encroached(workers)) return true;
     segments_.clear();
     faces_.clear();
     find_all_cells();
+    return true;
 }
 
-/// A point on one facet may destroy faces of another: goes round until a whole round changes nothing.
-void BoundaryRefiner::recover_facets(std::vector<FacetId> todo) {
+/// A point on one facet may destroy faces of another: goes round until a whole round changes nothing. @return false, half way, with more vertices than `most`
+bool BoundaryRefiner::recover_facets(std::vector<FacetId> todo, std::size_t most) {
     while (!todo.empty()) {
-        for (const FacetId f : todo) recover_facet(f);
+        for (const FacetId f : todo) {
+            if (mesh_.vertex_count() > most) return false;
+            recover_facet(f);
+        }
         drain_segments();
         todo = mesh_.take_broken_facets();
     }
     faces_.clear();
     cells_stale_ = false;
+    return true;
 }
 
 }  // namespace wellmesh

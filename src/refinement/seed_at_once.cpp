@@ -93,7 +93,7 @@ bool LatticeSeeder::seed_at_once(double base) {
 bool LatticeSeeder::make_whole(std::size_t points) {
     const std::size_t most = mesh_.vertex_count() + static_cast<std::size_t>(kMostMore * static_cast<double>(points));
     try {
-        boundary_.recover_broken(workers_);
+        if (!boundary_.recover_broken(workers_, most)) return false;
         tets_are_numbered_ = true;
         do {
             if (mesh_.vertex_count() > most && may_go_on(0)) return false;  // a run that is to end keeps what it has

@@ -160,7 +160,7 @@ TEST(Relabel, WhatIsNotThereIsBroken) {
     EXPECT_TRUE(mesh.has_broken());
     const auto broken = mesh.broken_facets();
     EXPECT_NE(std::find(broken.begin(), broken.end(), faces[5].facet), broken.end());
-    staged.boundary.recover_broken(staged.workers);
+    EXPECT_TRUE(staged.boundary.recover_broken(staged.workers));
     staged.boundary.conform();
     EXPECT_FALSE(mesh.has_broken());
     EXPECT_EQ(staged.problem(true), "");
