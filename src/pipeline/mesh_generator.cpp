@@ -200,7 +200,7 @@ private:
         const bool acute = !valid.acute_features.empty();
         // Where the input is acute features copy each other anyway.
         const double enough = most_for_gaps(options_.limits, static_cast<double>(mesh.vertex_count()));
-        AcuteGeometry acute_geometry(valid, workers_, !acute && options_.mode != Mode::certified && vertices_for_gaps(valid, enough, workers_) > enough, guard_.checkpoint());
+        AcuteGeometry acute_geometry(valid, workers_, !acute && options_.mode != Mode::certified && gaps_take_more_than(enough, valid, workers_), guard_.checkpoint());
         if (acute_geometry.copies()) guard_.set_ceiling(40 * mesh.vertex_count() + 20'000);
         BoundaryRefiner boundary(mesh, guard_, options_.seed, acute_geometry);
         const std::unique_ptr<RunRecorder> recorder = prepare_theory(mesh, boundary, options_);

@@ -87,4 +87,7 @@ void sample_gap(const LocalFeatureSize& size, const std::array<Vec3, 2>& ends, c
 /// Vertices that filling all narrow gaps of a complex takes, gaps outside the domain included; or any number above `enough` that they take at least.
 [[nodiscard]] double vertices_for_gaps(const ValidPlc& plc, double enough, Workers& workers);
 
+/// Whether it takes more vertices than that. Most complexes have no gap that could, which is found in a fraction of the time.
+[[nodiscard]] bool gaps_take_more_than(double enough, const ValidPlc& plc, Workers& workers);
+
 }  // namespace wellmesh

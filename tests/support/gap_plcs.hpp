@@ -75,4 +75,13 @@ inline Plc two_wires(double length, double width) {
     return plc;
 }
 
+/// The unit cube with two wires in it that cross at right angles, that far from each other: near to each other at no end.
+inline Plc crossed_wires(double length, double width) {
+    Plc plc = stack({1});
+    const double low = 0.47 - length / 2, high = 0.47 + length / 2;
+    plc.vertices.insert(plc.vertices.end(), {{low, 0.47, 0.5}, {high, 0.47, 0.5}, {0.47, low, 0.5 + width}, {0.47, high, 0.5 + width}});
+    plc.segments = {{{8, 9}}, {{10, 11}}};
+    return plc;
+}
+
 }  // namespace wellmesh::testing

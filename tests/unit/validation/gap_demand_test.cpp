@@ -88,6 +88,21 @@ TEST(GapDemand, EnoughIsEnough) {
     EXPECT_EQ(demand(plc, all), all);
 }
 
+/// However much is enough, and wherever the gap is.
+TEST(GapDemand, IsComparedWithoutBeingCounted) {
+    Workers workers(2);
+    std::vector<Plc> plcs{slabs({0.002, 0.01}), plate_above_floor(0.5, 0.0005, 0.008), blade_above_floor(0.4, 0.001), two_wires(0.4, 0.001), crossed_wires(0.4, 1e-4),
+                          crossed_wires(0.4, 1e-8)};
+    for (const NamedPlc& named : all_synthetic_plcs()) plcs.push_back(named.plc);
+    for (const Plc& plc : plcs)
+        for (const std::uint64_t rotation : {0U, 1U, 2U}) {
+            const ValidPlc valid = validate(transformed(plc, rotation, 0, rotation == 2 ? 3e-4 : 1));
+            const double all = vertices_for_gaps(valid, kAll, workers);
+            for (const double enough : {1e-3, 0.5 * all, 0.99 * all, 1.01 * all, 1e3 * all, 1e5, 1e9})
+                EXPECT_EQ(gaps_take_more_than(enough, valid, workers), all > enough) << all << ", " << enough;
+        }
+}
+
 /// Smaller pieces than kSlender widths are ordinary: they need no more than any mesh does.
 TEST(GapDemand, OfShortPiecesIsNotCounted) {
     EXPECT_EQ(demand(blade_above_floor(0.4, 1.01 * 0.4 / kSlender)), 0);
