@@ -75,12 +75,16 @@ inline Plc two_wires(double length, double width) {
     return plc;
 }
 
-/// The unit cube with two wires in it that cross at right angles, that far from each other: near to each other at no end.
-inline Plc crossed_wires(double length, double width) {
+/// The unit cube with wires in it that cross others at right angles, that far from them: near to each other at no end.
+inline Plc crossed_wires(std::uint32_t count, double width) {
     Plc plc = stack({1});
-    const double low = 0.47 - length / 2, high = 0.47 + length / 2;
-    plc.vertices.insert(plc.vertices.end(), {{low, 0.47, 0.5}, {high, 0.47, 0.5}, {0.47, low, 0.5 + width}, {0.47, high, 0.5 + width}});
-    plc.segments = {{{8, 9}}, {{10, 11}}};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double at = 0.1 + 0.8 * (i + 0.5) / count;
+        const auto first = static_cast<std::uint32_t>(plc.vertices.size());
+        plc.vertices.insert(plc.vertices.end(), {{0.1, at, 0.5}, {0.9, at, 0.5}, {at, 0.1, 0.5 + width}, {at, 0.9, 0.5 + width}});
+        plc.segments.push_back({{first, first + 1}});
+        plc.segments.push_back({{first + 2, first + 3}});
+    }
     return plc;
 }
 

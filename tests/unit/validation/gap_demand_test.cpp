@@ -91,8 +91,7 @@ TEST(GapDemand, EnoughIsEnough) {
 /// However much is enough, and wherever the gap is.
 TEST(GapDemand, IsComparedWithoutBeingCounted) {
     Workers workers(2);
-    std::vector<Plc> plcs{slabs({0.002, 0.01}), plate_above_floor(0.5, 0.0005, 0.008), blade_above_floor(0.4, 0.001), two_wires(0.4, 0.001), crossed_wires(0.4, 1e-4),
-                          crossed_wires(0.4, 1e-8)};
+    std::vector<Plc> plcs{slabs({0.002, 0.01}), plate_above_floor(0.5, 0.0005, 0.008), blade_above_floor(0.4, 0.001), two_wires(0.4, 0.001), crossed_wires(20, 1e-8)};
     for (const NamedPlc& named : all_synthetic_plcs()) plcs.push_back(named.plc);
     for (const Plc& plc : plcs)
         for (const std::uint64_t rotation : {0U, 1U, 2U}) {
