@@ -81,7 +81,7 @@ inline Plc crossed_wires(std::uint32_t count, double width) {
     for (std::uint32_t i = 0; i < count; ++i) {
         const double at = 0.1 + 0.8 * (i + 0.5) / count;
         const auto first = static_cast<std::uint32_t>(plc.vertices.size());
-        plc.vertices.insert(plc.vertices.end(), {{0.1, at, 0.5}, {0.9, at, 0.5}, {at, 0.1, 0.5 + width}, {at, 0.9, 0.5 + width}});
+        plc.vertices.insert(plc.vertices.end(), {{0.06, at, 0.5}, {0.94, at, 0.5}, {at, 0.06, 0.5 + width}, {at, 0.94, 0.5 + width}});
         plc.segments.push_back({{first, first + 1}});
         plc.segments.push_back({{first + 2, first + 3}});
     }
