@@ -74,8 +74,8 @@ void ConformingMesh::insert_at_once(Workers& workers, std::span<const std::uint3
 
 void ConformingMesh::relabel(Workers& workers, std::span<const Subsegment> segments, std::span<const Subface> faces) {
     WELLMESH_CHECK(Stage::conform, frames_.empty() && records_.size() == 1);
-    const CornerTable<2> segment_at(workers, segments.size(), [&](std::size_t i) { return std::array{segments[i].a, segments[i].b}; });
-    const CornerTable<3> face_at(workers, faces.size(), [&](std::size_t i) { return faces[i].corners; });
+    const CornerTable<2> segment_at(workers, info_.size(), segments.size(), [&](std::size_t i) { return std::array{segments[i].a, segments[i].b}; });
+    const CornerTable<3> face_at(workers, info_.size(), faces.size(), [&](std::size_t i) { return faces[i].corners; });
     std::vector<std::uint8_t> has_segment(segments.size(), 0), has_face(faces.size(), 0);
     const auto mark = [](std::uint8_t& m) { std::atomic_ref<std::uint8_t>(m).store(1, std::memory_order_relaxed); };
     SharedArray<Place> place;

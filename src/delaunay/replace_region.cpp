@@ -14,7 +14,7 @@ namespace {
 class Rim {
 public:
     Rim(Workers& workers, const KnownTets& known)
-        : role_(known.has_vertex().begin(), known.has_vertex().end()), table_(workers, known.rim().size(), [&](std::size_t r) { return known.rim()[r].corners; }) {
+        : role_(known.has_vertex().begin(), known.has_vertex().end()), table_(workers, known.has_vertex().size(), known.rim().size(), [&](std::size_t r) { return known.rim()[r].corners; }) {
         for (const KnownTets::RimFace& face : known.rim())
             for (const VertexId v : face.corners) role_[v.index()] = kOnRim;
     }

@@ -65,8 +65,9 @@ bool Refiner::insert_in_cell(TetId t, const Vec3& centre, double radius, Inserti
     if (!sliver_free) {
         const auto& c = mesh_.tets().corners(t);
         const std::uint64_t key = mix64(boundary_.seed(), mix64(mix64(c[0].value(), c[1].value()), mix64(c[2].value(), c[3].value())));
+        PickingPoints points(3, key);
         for (unsigned k = 1; k < candidates_ && !sliver_free; ++k) {
-            const Vec3 p = flush_to_exact_range(centre + boundary_.rules.region(radius) * picking_point(3, key, k));
+            const Vec3 p = flush_to_exact_range(centre + boundary_.rules.region(radius) * points.next());
             ++statistics_.candidates;
             if (!tri.find_conflict_cavity(p, t, cavity_) || mesh_.cell(cavity_.tets[0]) != cell) continue;
             if (!accepts(cavity_, where, radius) || boundary_.ball_around(cavity_).valid()) continue;
