@@ -83,11 +83,17 @@ std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, std::span<con
     constexpr std::size_t kTetsAPiece = std::size_t{1} << 13;
     std::vector<std::vector<std::size_t>> missing((order.size() + kTetsAPiece - 1) / kTetsAPiece);
     workers.for_ranges(order.size(), kTetsAPiece, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        const std::span<const TetId> tets{order.data() + begin, end - begin};
-        GoodTets(mesh, goals.max_radius_edge_ratio, angle).visit_others(tets, [&](std::size_t i) {
-            const auto& c = mesh.tets().corners(tets[i]);
+        std::vector<TetId> tets;
+        std::vector<std::size_t> places;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!Refiner::may_excuse(mesh, order[i])) continue;
+            tets.push_back(order[i]);
+            places.push_back(i);
+        }
+        GoodTets(mesh, goals.max_radius_edge_ratio, angle).visit_others(tets, [&](std::size_t k) {
+            const auto& c = mesh.tets().corners(tets[k]);
             const TetShape shape = shape_of(mesh.point(c[0]), mesh.point(c[1]), mesh.point(c[2]), mesh.point(c[3]));
-            if (!(shape.radius_edge <= goals.max_radius_edge_ratio && (angle <= 0 || shape.min_dihedral_deg >= angle))) missing[piece].push_back(begin + i);
+            if (!(shape.radius_edge <= goals.max_radius_edge_ratio && (angle <= 0 || shape.min_dihedral_deg >= angle))) missing[piece].push_back(places[k]);
         });
     });
     for (const std::vector<std::size_t>& piece : missing)

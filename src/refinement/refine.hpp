@@ -4,6 +4,7 @@
 // that one's picking region. The first candidate whose star holds no new sliver is taken.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -77,6 +78,11 @@ public:
     [[nodiscard]] bool excuses(TetId t) { return is_in_gap(t) || forced_by(t).has_value(); }
     /// False: the input has neither acute angles nor gaps that are left, so nothing is excused.
     [[nodiscard]] bool may_excuse() const { return boundary_.acute().any() || gaps_.any(); }
+    /// False: nothing can excuse this one. What forces a tetrahedron, or joins the sides of a gap, is an edge between vertices of the boundary.
+    [[nodiscard]] static bool may_excuse(const ConformingMesh& mesh, TetId t) {
+        const TetStore::Corners& c = mesh.tets().corners(t);
+        return std::count_if(c.begin(), c.end(), [&](VertexId v) { return mesh.info(v).carrier != CarrierKind::region; }) >= 2;
+    }
     [[nodiscard]] const RefineStatistics& statistics() const { return statistics_; }
     [[nodiscard]] const SizeField& sizes() const { return sizes_; }
     /// Sets the guard of Theorem 4.2: no edge below its bound is made for quality. The reference is the shortest edge of the mesh as it is now,
