@@ -4,7 +4,9 @@
 // tetrahedra and faces is that of grow_cavity(), which goes face by face and can stop half-way.
 #include <cmath>
 
+#include "core/infinity.hpp"
 #include "delaunay/triangulation.hpp"
+#include "predicates/precise_inspheres.hpp"
 
 namespace wellmesh {
 
@@ -100,12 +102,27 @@ bool Triangulation::grow_in_waves(const Vec3& p, TetId seed, Cavity& cavity) {
 template bool Triangulation::grow_in_waves<false>(const Vec3& p, TetId seed, Cavity& cavity);
 template bool Triangulation::grow_in_waves<true>(const Vec3& p, TetId seed, Cavity& cavity);
 
-/// Gives values that decide to the candidates that have none.
+/// Gives values that decide to the candidates that have none. On a facet of the hull that is no side of a box whole waves are flat.
 void Triangulation::decide_wave(const Vec3& p, std::size_t candidates) {
-    for (std::size_t k = 0; k < candidates; ++k) {
-        if (std::fabs(wave_.values[k]) > filter_.insphere_bound()) continue;
-        wave_.values[k] = in_conflict(wave_.candidates[k], p) ? 1 : -1;
+    Wave& w = wave_;
+    const auto is_decided = [&](std::size_t k) { return std::fabs(w.values[k]) > filter_.insphere_bound(); };
+    w.unsure.clear();
+    w.unsure_corners.clear();
+    if (has_insphere_lanes()) {
+        for (std::size_t k = 0; k < candidates; ++k) {
+            if (is_decided(k) || w.values[k] == 0 || tets_.is_ghost(w.candidates[k])) continue;  // a tie is a tie mostly
+            w.unsure.push_back(static_cast<std::uint32_t>(k));
+            w.unsure_corners.push_back(w.corners[k]);
+        }
     }
+    if (!w.unsure.empty()) {
+        w.signs.resize(w.unsure.size() + 3);
+        insphere_signs_of_records({&vertices_.data()->point}, w.unsure_corners, p, w.signs.data());
+        for (std::size_t i = 0; i < w.unsure.size(); ++i)
+            if (w.signs[i] != 0) w.values[w.unsure[i]] = w.signs[i] * kInfinity;
+    }
+    for (std::size_t k = 0; k < candidates; ++k)
+        if (!is_decided(k)) w.values[k] = in_conflict(w.candidates[k], p) ? 1 : -1;
 }
 
 }  // namespace wellmesh

@@ -339,6 +339,10 @@ private:
         std::vector<RecordNumbers> corners;
         std::vector<double> values;
         std::vector<BoundaryFace> boundary;
+        // of those that the filter doesn't decide
+        std::vector<std::uint32_t> unsure;
+        std::vector<RecordNumbers> unsure_corners;
+        std::vector<double> signs;
     } wave_;
     std::vector<TetId> new_tets_;
     std::vector<TetId> star_stack_;
