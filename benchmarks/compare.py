@@ -7,7 +7,8 @@
     benchmarks/compare.py --part growth --tets 10000 --tets 1000000 --tets 30000000
 
 delaunay    the triangulation of one file of uniform points; wellmesh's `delaunay_seconds` and what the drivers in rivals/ count
-mesh        the unit cube and closed surfaces (plain .off) at equal numbers of tetrahedra (within 3 %, sizes tuned): wellmesh at --min-dihedral 20 and 30
+mesh        the unit cube and other models at equal numbers of tetrahedra (within 3 %, sizes tuned): closed surfaces (plain .off), or complexes with inner
+            facets (.poly, .smesh), which of the rivals TetGen 1.5 reads: wellmesh at --min-dihedral 20 and 30
             (all stages but reading, certificate and writing, which stand beside), TetGen 1.5 and 1.6 `-pq1.4/14`, Gmsh-HXT, CGAL with perturbation, Netgen
 growth      wellmesh alone on the cube: time, certificate and memory by the number of tetrahedra, with exponents
 
@@ -157,7 +158,7 @@ class Comparison:
                 **cost(result), **{f"stage_{stage}": s for stage, s in stages.items()}}
 
     def tetgen15_once(self, model, volume):
-        name = os.path.join(self.folder, "tetgen.off")
+        name = os.path.join(self.folder, "tetgen" + os.path.splitext(model)[1])
         with open(model) as source, open(name, "w") as copy:
             copy.write(source.read())
         result, points, tets = tetgen(self.found(self.arguments.tetgen), f"-pq1.4/14ga{volume:.17g}", name, self.arguments.limit)
@@ -171,18 +172,32 @@ class Comparison:
         a, python = self.arguments, self.arguments.python
         size, cell = EDGE_OVER_ROOT * (volume / target) ** (1 / 3), volume / target * 2.5
 
+        def driver(*command):
+            if not is_surface(model):
+                raise Missing("its driver reads closed surfaces only")
+            return driver_row(list(command), a.limit)
+
         def wheel(name, *words):
-            return driver_row([python, os.path.join(DRIVERS, name), *words], a.limit)
+            return driver(python, os.path.join(DRIVERS, name), *words)
 
         return [Contestant(f"wellmesh {d}", 3, lambda h, d=d: self.mesh_once(model, h, d), size) for d in a.min_dihedral] + [
             Contestant("TetGen 1.5 -pq1.4/14", 1, lambda v: self.tetgen15_once(model, v), cell),
             Contestant("TetGen 1.6 -pq1.4/14", 1, lambda v: wheel("tetgen_wheel.py", model, f"pq1.4/14a{v:.17g}", self.out), cell),
             Contestant("Gmsh -algo hxt", 3, lambda h: wheel("gmsh_wheel.py", "mesh", model, repr(h), str(a.threads), self.out), size * 0.75),
-            Contestant("CGAL, perturbed to 19", 3, lambda h: driver_row([os.path.join(a.rivals, "cgal_mesh"), model, repr(h), "19", self.out], a.limit), size),
+            Contestant("CGAL, perturbed to 19", 3, lambda h: driver(os.path.join(a.rivals, "cgal_mesh"), model, repr(h), "19", self.out), size),
             Contestant("Netgen", 3, lambda h: wheel("netgen_wheel.py", model, repr(h), self.out), size)]
 
+    def volume_of(self, model):
+        """Of all that is to be filled, as wellmesh counts it for a complex: a first guess of sizes rests on it, no more."""
+        if is_surface(model):
+            return volume_of_surface(model)
+        report = os.path.join(self.folder, "report.json")
+        run([self.program, "mesh", model, "--min-dihedral", "0", "--quiet", "--threads", "1", "--json", report], self.arguments.limit)
+        with open(report) as stream:
+            return sum(cell["volume"] for cell in json.load(stream)["statistics"]["cells"] if cell["filled"])
+
     def mesh(self, model, target):
-        contestants = self.contestants(model, target, volume_of(model))
+        contestants = self.contestants(model, target, self.volume_of(model))
         self.leave_out(contestants)
 
         def attempt(c):
@@ -237,7 +252,11 @@ def cube(folder):
     return path
 
 
-def volume_of(model):
+def is_surface(model):
+    return os.path.splitext(model)[1].lower() not in (".poly", ".smesh")
+
+
+def volume_of_surface(model):
     """Of a closed triangulated surface in a plain .off."""
     sys.path.insert(0, DRIVERS)
     from meshes import read_off
@@ -303,7 +322,7 @@ def parsed():
     parser.add_argument("--part", action="append", choices=["delaunay", "mesh", "growth"], help="only this one (may be repeated)")
     parser.add_argument("--points", type=int, action="append", help="of the triangulations (default 1000000; may be repeated)")
     parser.add_argument("--tets", type=int, action="append", help="of meshes (default 1000000), of the growth 10k, 100k, 1M (may be repeated)")
-    parser.add_argument("--model", action="append", default=[], help="a closed surface, plain .off, besides the cube (may be repeated)")
+    parser.add_argument("--model", action="append", default=[], help="a closed surface, plain .off, or a complex, .poly or .smesh, besides the cube (may be repeated)")
     parser.add_argument("--min-dihedral", type=float, action="append", help="wellmesh's goals (default 20 and 30)")
     parser.add_argument("--skip", action="append", help="leave out rivals whose name begins so")
     parser.add_argument("--threads", type=int, default=1, help="of wellmesh, HXT and Gmsh; the others have one")
