@@ -292,9 +292,13 @@ void LatticeSeeder::find_clear_of(const Boundary& boundary, std::span<Seed> bloc
         }
         if (few.empty()) continue;
         few = few.grown(farthest * (1 + 1e-9));
-        near_these.clear();
-        for (const std::uint32_t i : candidates)
-            if (boundary.boxes[i].meets(few)) near_these.push_back(i);
+        near_these.resize(candidates.size());
+        std::size_t count = 0;
+        for (const std::uint32_t i : candidates) {
+            near_these[count] = i;
+            count += boundary.boxes[i].meets(few) ? 1U : 0U;
+        }
+        near_these.resize(count);
         for (std::size_t k = first; k < end; ++k)
             block[k].waits = block[k].waits && std::all_of(near_these.begin(), near_these.end(), [&](std::uint32_t i) { return is_clear(block[k].point, reach[k], i); });
     }

@@ -40,13 +40,15 @@ struct Box {
         return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     }
     [[nodiscard]] double squared_distance_to(const Vec3& p) const {
-        const auto outside = [](double v, double from, double to) { return v < from ? from - v : v > to ? v - to : 0.0; };
+        const auto outside = [](double v, double from, double to) { return std::max(std::max(from - v, v - to), 0.0); };
         return squared_norm({outside(p.x, low.x, high.x), outside(p.y, low.y, high.y), outside(p.z, low.z, high.z)});
     }
     [[nodiscard]] double distance_to(const Vec3& p) const { return std::sqrt(squared_distance_to(p)); }
     [[nodiscard]] Box grown(double by) const { return {{low.x - by, low.y - by, low.z - by}, {high.x + by, high.y + by, high.z + by}}; }
+    /// What a comparison says can't be foreseen: no branch.
     [[nodiscard]] bool meets(const Box& b) const {
-        return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y && low.z <= b.high.z && b.low.z <= high.z;
+        const auto overlap = [](double from, double to, double other_from, double other_to) { return static_cast<unsigned>(from <= other_to) & static_cast<unsigned>(other_from <= to); };
+        return (overlap(low.x, high.x, b.low.x, b.high.x) & overlap(low.y, high.y, b.low.y, b.high.y) & overlap(low.z, high.z, b.low.z, b.high.z)) != 0;
     }
 };
 
