@@ -37,37 +37,37 @@ public:
           squared_radius_edge_(max_radius_edge * max_radius_edge * (1 - kMargin)),
           signed_squared_cosine_(signed_square(min_dihedral_deg > 0 ? std::cos(min_dihedral_deg * (std::numbers::pi / 180)) : 2) - kMargin) {}
 
-    /// Calls use(k) for those of the tetrahedra of which it can't tell.
+    /// Calls use(place, tetrahedron) for those of which it can't tell, by and by.
     template <class Use>
-    void visit_others(std::span<const TetId> tets, Use&& use) {
-        for (std::size_t first = 0; first < tets.size(); first += kShapeLanes) {
-            for (std::size_t lane = 0; lane < kShapeLanes; ++lane) {
-                const auto& c = mesh_.tets().corners(tets[std::min(first + lane, tets.size() - 1)]);
-                for (std::size_t k = 0; k < 4; ++k) {
-                    const Vec3& p = mesh_.point(c[k]);
-                    corners_.at[k][0][lane] = p.x;
-                    corners_.at[k][1][lane] = p.y;
-                    corners_.at[k][2][lane] = p.z;
-                }
-            }
-            square_shapes(corners_, shapes_);
-            for (std::size_t lane = 0; lane < std::min(kShapeLanes, tets.size() - first); ++lane)
-                if (!is_surely_good(lane)) use(first + lane);
-        }
+    void add(std::size_t place, TetId t, Use&& use) {
+        const auto& c = mesh_.tets().corners(t);
+        batch_.add({place, t}, mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]), telling(use));
+    }
+    template <class Use>
+    void finish(Use&& use) {
+        batch_.finish(telling(use));
     }
 
 private:
     static constexpr double kMargin = 1e-9;  // what the lanes say is off by 1e-12
 
     static double signed_square(double x) { return x * std::abs(x); }
-    [[nodiscard]] bool is_surely_good(std::size_t lane) const {
-        return may_trust(shapes_, lane) && shapes_.six_volumes[lane] > 0 && shapes_.radius_edge[lane] < squared_radius_edge_ && shapes_.largest_cosine[lane] < signed_squared_cosine_;
+    template <class Use>
+    [[nodiscard]] auto telling(Use& use) const {
+        return [this, &use](const Placed& p, const SquaredShapes& shapes, std::size_t lane) {
+            const bool is_good = may_trust(shapes, lane) && shapes.six_volumes[lane] > 0 && shapes.radius_edge[lane] < squared_radius_edge_ &&
+                                 shapes.largest_cosine[lane] < signed_squared_cosine_;
+            if (!is_good) use(p.place, p.tet);
+        };
     }
 
+    struct Placed {
+        std::size_t place = 0;
+        TetId tet{};
+    };
     const ConformingMesh& mesh_;
     double squared_radius_edge_, signed_squared_cosine_;
-    CornerLanes corners_{};
-    SquaredShapes shapes_{};
+    ShapeBatch<Placed> batch_;
 };
 
 }  // namespace
@@ -83,18 +83,15 @@ std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, std::span<con
     constexpr std::size_t kTetsAPiece = std::size_t{1} << 13;
     std::vector<std::vector<std::size_t>> missing((order.size() + kTetsAPiece - 1) / kTetsAPiece);
     workers.for_ranges(order.size(), kTetsAPiece, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        std::vector<TetId> tets;
-        std::vector<std::size_t> places;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!Refiner::may_excuse(mesh, order[i])) continue;
-            tets.push_back(order[i]);
-            places.push_back(i);
-        }
-        GoodTets(mesh, goals.max_radius_edge_ratio, angle).visit_others(tets, [&](std::size_t k) {
-            const auto& c = mesh.tets().corners(tets[k]);
+        GoodTets good(mesh, goals.max_radius_edge_ratio, angle);
+        const auto look = [&](std::size_t place, TetId t) {
+            const auto& c = mesh.tets().corners(t);
             const TetShape shape = shape_of(mesh.point(c[0]), mesh.point(c[1]), mesh.point(c[2]), mesh.point(c[3]));
-            if (!(shape.radius_edge <= goals.max_radius_edge_ratio && (angle <= 0 || shape.min_dihedral_deg >= angle))) missing[piece].push_back(places[k]);
-        });
+            if (!(shape.radius_edge <= goals.max_radius_edge_ratio && (angle <= 0 || shape.min_dihedral_deg >= angle))) missing[piece].push_back(place);
+        };
+        for (std::size_t i = begin; i < end; ++i)
+            if (Refiner::may_excuse(mesh, order[i])) good.add(i, order[i], look);
+        good.finish(look);
     });
     for (const std::vector<std::size_t>& piece : missing)
         for (const std::size_t i : piece) {

@@ -4,6 +4,9 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
+
+#include "wellmesh/vec3.hpp"
 
 namespace wellmesh {
 
@@ -30,5 +33,35 @@ inline bool may_trust(const SquaredShapes& s, std::size_t lane) {
     return s.scaled_radius[lane] < 1e280 && s.shortest_edge[lane] > 1e-60 && s.six_volumes[lane] * s.six_volumes[lane] > 1e-200;
 }
 void square_shapes(const CornerLanes& corners, SquaredShapes& shapes) noexcept;
+
+/// Tetrahedra of a loop, which are measured as soon as there is one for each lane.
+template <class Tet>
+class ShapeBatch {
+public:
+    /// Calls use(tetrahedron, shapes, lane) for each of them, by and by.
+    template <class Use>
+    void add(const Tet& tet, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Use&& use) {
+        std::size_t k = 0;
+        for (const Vec3* const p : {&a, &b, &c, &d}) {
+            corners_.at[k][0][count_] = p->x, corners_.at[k][1][count_] = p->y, corners_.at[k][2][count_] = p->z;
+            ++k;
+        }
+        tets_[count_] = tet;
+        if (++count_ == kShapeLanes) finish(use);
+    }
+    /// For those that still wait. What is in the other lanes doesn't matter.
+    template <class Use>
+    void finish(Use&& use) {
+        if (count_ == 0) return;
+        square_shapes(corners_, shapes_);
+        for (std::size_t lane = 0, count = std::exchange(count_, 0); lane < count; ++lane) use(tets_[lane], shapes_, lane);
+    }
+
+private:
+    CornerLanes corners_{};
+    SquaredShapes shapes_{};
+    std::array<Tet, kShapeLanes> tets_{};
+    std::size_t count_ = 0;
+};
 
 }  // namespace wellmesh

@@ -88,6 +88,20 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
     return sliver_fault(t, six_volume, squared_edge, squared_badness);
 }
 
+/// Does classify() surely find nothing, of one of several that were measured at once?
+bool Refiner::is_surely_faultless(TetId t, const SquaredShapes& s, std::size_t lane) const {
+    constexpr double kSlack = 1e-9;  // what the lanes say is off by 1e-12
+    if (strict() || (sliver_rule_ && sliver_rule_->splits) || !may_trust(s, lane)) return false;
+    const double six = s.six_volumes[lane], volume = six * six, squared_radius = s.scaled_radius[lane] / (4 * volume);
+    if (!(six > 0 && s.radius_edge[lane] < std::min(max_radius_edge_ * max_radius_edge_, kFlatRadiusEdge * kFlatRadiusEdge) * (1 - kSlack))) return false;
+    // No edge is longer than the sphere is wide.
+    const double longest = 4 * squared_radius * (1 + kSlack);
+    if (!(six > rounding_ * longest && volume > kThinVolume * kThinVolume * longest * longest * longest)) return false;
+    const TetStore::Corners& k = mesh_.tets().corners(t);
+    const TetSize size = sizes_.of(mesh_.point(k[0]), mesh_.point(k[1]), mesh_.point(k[2]), mesh_.point(k[3]), mesh_.cell(t));
+    return squared_radius < squared_size_slack_ * size.max_squared_circumradius * (1 - kSlack) && six < 6 * size.max_volume * (1 - kSlack);
+}
+
 /// Flat, or a needle between a coarse and a fine part: that has little volume, too, but a sound circumsphere, which is computed exactly.
 Refiner::Fault Refiner::classify_thin(TetId t, double squared_longest, double& squared_badness) const {
     const auto& k = mesh_.tets().corners(t);

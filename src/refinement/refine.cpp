@@ -9,6 +9,7 @@
 
 #include "conforming/place_point.hpp"
 #include "core/vec3_math.hpp"
+#include "quality/shape_lanes.hpp"
 #include "quality/tet_shape.hpp"
 
 namespace wellmesh {
@@ -91,12 +92,20 @@ void Refiner::enqueue_all() {
     const std::size_t slots = mesh_.tets().slots();
     std::vector<std::vector<Faulty>> found((slots + kGrain - 1) / kGrain);
     workers_.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Faulty f{TetId{i}};
-            if (!mesh_.tets().is_finite(f.tet) || !mesh_.in_domain(f.tet)) continue;
-            f.fault = classify(f.tet, f.badness);
+        ShapeBatch<TetId> batch;
+        const auto look = [&](TetId t, const SquaredShapes& shapes, std::size_t lane) {
+            if (is_surely_faultless(t, shapes, lane)) return;
+            Faulty f{t};
+            f.fault = classify(t, f.badness);
             if (f.fault != Fault::none) found[piece].push_back(f);
+        };
+        for (std::size_t i = begin; i < end; ++i) {
+            const TetId t{i};
+            if (!mesh_.tets().is_finite(t) || !mesh_.in_domain(t)) continue;
+            const TetStore::Corners& c = mesh_.tets().corners(t);
+            batch.add(t, mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]), look);
         }
+        batch.finish(look);
     });
     for (const std::vector<Faulty>& piece : found)
         for (const Faulty& f : piece) enqueue(f.tet, f.fault, f.badness);

@@ -19,6 +19,7 @@
 #include "conforming/savepoint.hpp"
 #include "core/run_guard.hpp"
 #include "core/workers.hpp"
+#include "quality/shape_lanes.hpp"
 #include "refinement/bad_tet_queue.hpp"
 #include "refinement/sliver_rule.hpp"
 #include "refinement/thin_gaps.hpp"
@@ -121,6 +122,7 @@ private:
     void clear_around(VertexId v);
     void insert_off_centre(TetId t, const Vec3& centre, InsertionReason reason);
     [[nodiscard]] Fault classify_strictly(TetId t, double& squared_badness) const;
+    [[nodiscard]] bool is_surely_faultless(TetId t, const SquaredShapes& shapes, std::size_t lane) const;
     [[nodiscard]] Fault classify_thin(TetId t, double squared_longest, double& squared_badness) const;
     [[nodiscard]] bool strict() const { return boundary_.rules.strict; }
     bool star_is_good(const Cavity& cavity, const Placement& where) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "quality/shape_lanes.hpp"
 #include "shape/corners.hpp"
 
 namespace wellmesh {
@@ -102,9 +103,17 @@ void Mending::collect(Workers& workers) {
     // What goes beyond shape searches the mesh: not for several threads at once. It matters to few.
     std::vector<std::vector<TetId>> suspects((slots + kGrain - 1) / kGrain);
     workers.for_ranges(slots, kGrain, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        ShapeBatch<TetId> batch;
+        const auto look = [&](TetId t, const SquaredShapes& shapes, std::size_t lane) {
+            if (!judge_.is_surely_good(shapes, lane, goes_beyond_shape) && is_doubtful(t)) suspects[piece].push_back(t);
+        };
         for (std::size_t i = begin; i < end; ++i) {
-            if (const TetId t{i}; is_doubtful(t)) suspects[piece].push_back(t);
+            const TetId t{i};
+            if (!judge_.counts(t)) continue;
+            const TetStore::Corners& c = mesh_.tets().corners(t);
+            batch.add(t, mesh_.point(c[0]), mesh_.point(c[1]), mesh_.point(c[2]), mesh_.point(c[3]), look);
         }
+        batch.finish(look);
     });
     ++collections_;
     doubtful_.clear();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "conforming/conforming_mesh.hpp"
+#include "quality/shape_lanes.hpp"
 #include "quality/tet_shape.hpp"
 #include "sizing/size_field.hpp"
 
@@ -121,6 +122,16 @@ public:
         if (!(above(0, 1) && above(0, 2) && above(0, 3) && above(1, 2) && above(1, 3) && above(2, 3))) return false;
         // As in aspect_badness().
         return max_aspect_ == kNoAspect || kMargin * squared_norm(scaled_circumcentre(b - a, c - a, d - a)) * (q[0] + q[1] + q[2] + q[3]) <= fourth * (max_aspect_ * max_aspect_);
+    }
+    /// The same of one of several that were measured at once, and where asked that it keeps the radius-edge ratio, too.
+    [[nodiscard]] bool is_surely_good(const SquaredShapes& s, std::size_t lane, bool keeps_radius_edge) const {
+        constexpr double kSlack = 1e-9;  // what the lanes say is off by 1e-12
+        const double six = s.six_volumes[lane], fourth = (six * six) * (six * six);
+        if (!(may_trust(s, lane) && six > 0 && goal_ > 0 && s.largest_cosine[lane] < goal_ * goal_ - kSlack)) return false;
+        if (keeps_radius_edge && !(s.radius_edge[lane] < squared_radius_edge_ * (1 - kSlack))) return false;
+        // As in aspect_badness().
+        return max_aspect_ == kNoAspect ||
+               (1 + kSlack) * s.scaled_radius[lane] * (s.areas[0][lane] + s.areas[1][lane] + s.areas[2][lane] + s.areas[3][lane]) <= fourth * (max_aspect_ * max_aspect_);
     }
     /// Cosine of the smallest dihedral angle, nothing else.
     [[nodiscard]] double cosine(TetId t) const {

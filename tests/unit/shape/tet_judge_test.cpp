@@ -67,19 +67,33 @@ TEST(TetJudge, WhatIsSurelyGoodIsGood) {
     Refiner refiner(staged.mesh, staged.boundary, staged.guard, staged.options);
     staged.conform();
     ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
-    TetJudge judge(staged.mesh, refiner.sizes(), 2);
+    TetJudge judge(staged.mesh, refiner.sizes(), 1.2);  // some are beyond that
     for (const double aspect : {TetJudge::kNoAspect, 8.0, 3.5})
         for (const double angle : {10.0, 30.0, 50.0}) {
             judge.set_goal(std::cos(angle * std::numbers::pi / 180), aspect);
-            std::size_t sure = 0, good = 0;
+            std::size_t sure = 0, good = 0, sure_in_lanes = 0;
+            ShapeBatch<TetId> batch;
+            const auto look = [&](TetId t, const SquaredShapes& shapes, std::size_t lane) {
+                const bool is_sure = judge.is_surely_good(shapes, lane, false), with_ratio = judge.is_surely_good(shapes, lane, true);
+                EXPECT_TRUE(!is_sure || judge.shape_badness(t) <= judge.goal()) << angle;
+                EXPECT_EQ(with_ratio, is_sure && judge.keeps_radius_edge(t)) << angle;
+                sure_in_lanes += is_sure;
+            };
             staged.for_domain([&](TetId t) {
                 const bool is_sure = judge.is_surely_good(t);
                 EXPECT_TRUE(!is_sure || judge.shape_badness(t) <= judge.goal()) << angle;
                 sure += is_sure;
                 good += judge.shape_badness(t) <= judge.goal();
+                const auto& c = staged.mesh.tets().corners(t);
+                batch.add(t, staged.mesh.point(c[0]), staged.mesh.point(c[1]), staged.mesh.point(c[2]), staged.mesh.point(c[3]), look);
             });
+            batch.finish(look);
             EXPECT_LE(sure, good);
-            if (aspect != 3.5) { EXPECT_GE(static_cast<double>(sure), 0.7 * static_cast<double>(good)) << angle; }
+            EXPECT_LE(sure_in_lanes, good);
+            if (aspect != 3.5) {
+                EXPECT_GE(static_cast<double>(sure), 0.7 * static_cast<double>(good)) << angle;
+                EXPECT_GE(static_cast<double>(sure_in_lanes), 0.7 * static_cast<double>(good)) << angle;
+            }
         }
 }
 
