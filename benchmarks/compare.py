@@ -8,7 +8,7 @@
 
 delaunay    the triangulation of one file of uniform points; wellmesh's `delaunay_seconds` and what the drivers in rivals/ count
 mesh        the unit cube and other models at equal numbers of tetrahedra (within 3 %, sizes tuned): closed surfaces (plain .off), or complexes with inner
-            facets (.poly, .smesh), which of the rivals TetGen 1.5 reads: wellmesh at --min-dihedral 20 and 30
+            facets (.poly, .smesh), of the rivals for TetGen 1.5 only: wellmesh at --min-dihedral 20 and 30
             (all stages but reading, certificate and writing, which stand beside), TetGen 1.5 and 1.6 `-pq1.4/14`, Gmsh-HXT, CGAL with perturbation, Netgen
 growth      wellmesh alone on the cube: time, certificate and memory by the number of tetrahedra, with exponents
 
@@ -191,13 +191,19 @@ class Comparison:
         """Of all that is to be filled, as wellmesh counts it for a complex: a first guess of sizes rests on it, no more."""
         if is_surface(model):
             return volume_of_surface(model)
-        report = os.path.join(self.folder, "report.json")
-        run([self.program, "mesh", model, "--min-dihedral", "0", "--quiet", "--threads", "1", "--json", report], self.arguments.limit)
-        with open(report) as stream:
-            return sum(cell["volume"] for cell in json.load(stream)["statistics"]["cells"] if cell["filled"])
+        result = run([self.program, "doctor", model, "--json", "-"], self.arguments.limit)
+        try:
+            return sum(cell["volume"] for cell in json.loads(result.output)["cells"] if cell["filled"])
+        except (ValueError, KeyError):
+            raise Missing(f"no volume: wellmesh doctor ended {result.code}: {result.errors[-150:]}") from None
 
     def mesh(self, model, target):
-        contestants = self.contestants(model, target, self.volume_of(model))
+        try:
+            contestants = self.contestants(model, target, self.volume_of(model))
+        except Missing as reason:
+            contestants = self.contestants(model, target, 1)
+            for c in contestants:
+                c.missing = str(reason)
         self.leave_out(contestants)
 
         def attempt(c):
@@ -322,7 +328,7 @@ def parsed():
     parser.add_argument("--part", action="append", choices=["delaunay", "mesh", "growth"], help="only this one (may be repeated)")
     parser.add_argument("--points", type=int, action="append", help="of the triangulations (default 1000000; may be repeated)")
     parser.add_argument("--tets", type=int, action="append", help="of meshes (default 1000000), of the growth 10k, 100k, 1M (may be repeated)")
-    parser.add_argument("--model", action="append", default=[], help="a closed surface, plain .off, or a complex, .poly or .smesh, besides the cube (may be repeated)")
+    parser.add_argument("--model", action="append", default=[], help="a closed surface, plain .off, or a complex, .poly or .smesh with its points in it, besides the cube (may be repeated)")
     parser.add_argument("--min-dihedral", type=float, action="append", help="wellmesh's goals (default 20 and 30)")
     parser.add_argument("--skip", action="append", help="leave out rivals whose name begins so")
     parser.add_argument("--threads", type=int, default=1, help="of wellmesh, HXT and Gmsh; the others have one")

@@ -14,8 +14,8 @@
 
 namespace wellmesh {
 
-/// Finds the number of an edge or a face by its corners, in any order: each is listed with its last corner, of which it has few, and which those around it have, too, so
-/// that they lie together in memory where vertices near each other have numbers near each other. Built once, on all workers; searched from any thread.
+/// Finds the number of an edge or a face by its corners, in any order. Each is listed with its last corner, which has few, so that what lies together in space lies together in
+/// memory where numbers of vertices do. Built once, on all workers; searched from any thread.
 template <std::size_t kCorners>
 class CornerTable {
 public:
@@ -23,7 +23,8 @@ public:
     using Corners = std::array<VertexId, kCorners>;
     static constexpr std::uint32_t kNone = 0xffffffffU;
 
-    /// @param vertices  all corners are below  @param corners_of  number -> corners, each edge or face once; from any thread
+    /// @param vertices  all corners are below, those that are searched for, too
+    /// @param corners_of  number -> corners, each edge or face once; asked twice, from any thread
     template <class CornersOf>
     CornerTable(Workers& workers, std::size_t vertices, std::size_t count, const CornersOf& corners_of) : first_(vertices + 1, 0), entries_(count) {
         constexpr std::size_t kGrain = std::size_t{1} << 13;

@@ -108,7 +108,7 @@ void Triangulation::decide_wave(const Vec3& p, std::size_t candidates) {
     const auto is_decided = [&](std::size_t k) { return std::fabs(w.values[k]) > filter_.insphere_bound(); };
     w.unsure.clear();
     w.unsure_corners.clear();
-    if (has_insphere_lanes()) {
+    if (has_insphere_lanes() && filter_.insphere_bound() < kInfinity) {
         for (std::size_t k = 0; k < candidates; ++k) {
             if (is_decided(k) || w.values[k] == 0 || tets_.is_ghost(w.candidates[k])) continue;  // a tie is a tie mostly
             w.unsure.push_back(static_cast<std::uint32_t>(k));

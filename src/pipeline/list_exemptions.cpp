@@ -34,8 +34,8 @@ class GoodTets {
 public:
     GoodTets(const ConformingMesh& mesh, double max_radius_edge, double min_dihedral_deg)
         : mesh_(mesh),
-          squared_radius_edge_(max_radius_edge * max_radius_edge * (1 - kMargin)),
-          signed_squared_cosine_(signed_square(min_dihedral_deg > 0 ? std::cos(min_dihedral_deg * (std::numbers::pi / 180)) : 2) - kMargin) {}
+          squared_radius_edge_(max_radius_edge * max_radius_edge * (1 - kLaneSlack)),
+          signed_squared_cosine_(signed_square(min_dihedral_deg > 0 ? std::cos(min_dihedral_deg * (std::numbers::pi / 180)) : 2) - kLaneSlack) {}
 
     /// Calls use(place, tetrahedron) for those of which it can't tell, by and by.
     template <class Use>
@@ -49,8 +49,6 @@ public:
     }
 
 private:
-    static constexpr double kMargin = 1e-9;  // what the lanes say is off by 1e-12
-
     static double signed_square(double x) { return x * std::abs(x); }
     template <class Use>
     [[nodiscard]] auto telling(Use& use) const {
@@ -90,7 +88,7 @@ std::vector<Exemption> list_exemptions(const ConformingMesh& mesh, std::span<con
             if (!(shape.radius_edge <= goals.max_radius_edge_ratio && (angle <= 0 || shape.min_dihedral_deg >= angle))) missing[piece].push_back(place);
         };
         for (std::size_t i = begin; i < end; ++i)
-            if (Refiner::may_excuse(mesh, order[i])) good.add(i, order[i], look);
+            if (Refiner::may_be_excused(mesh, order[i])) good.add(i, order[i], look);
         good.finish(look);
     });
     for (const std::vector<std::size_t>& piece : missing)

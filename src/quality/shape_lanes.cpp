@@ -9,6 +9,9 @@
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define WELLMESH_HAS_AVX_TARGETS 1
+#ifndef __clang__  // which knows no way to ask for whole registers
+#define WELLMESH_HAS_AVX512_TARGET 1
+#endif
 #define WELLMESH_ALWAYS_INLINE [[gnu::always_inline]]
 #else
 #define WELLMESH_ALWAYS_INLINE
@@ -40,7 +43,7 @@ WELLMESH_ALWAYS_INLINE inline void square_each(const CornerLanes& p, SquaredShap
     const double *const bx = p.at[1][0].data(), *const by = p.at[1][1].data(), *const bz = p.at[1][2].data();
     const double *const cx = p.at[2][0].data(), *const cy = p.at[2][1].data(), *const cz = p.at[2][2].data();
     const double *const dx = p.at[3][0].data(), *const dy = p.at[3][1].data(), *const dz = p.at[3][2].data();
-    double *const six_volumes = s.six_volumes.data(), *const shortest_edge = s.shortest_edge.data(), *const scaled_radius = s.scaled_radius.data();
+    double *const six_volumes = s.six_volumes.data(), *const shortest_edge = s.shortest_edge.data(), *const longest_edge = s.longest_edge.data(), *const scaled_radius = s.scaled_radius.data();
     double *const radius_edge = s.radius_edge.data(), *const sigma = s.sigma.data();
     double *const area0 = s.areas[0].data(), *const area1 = s.areas[1].data(), *const area2 = s.areas[2].data(), *const area3 = s.areas[3].data();
     double *const largest_cosine = s.largest_cosine.data(), *const smallest_cosine = s.smallest_cosine.data();
@@ -51,7 +54,8 @@ WELLMESH_ALWAYS_INLINE inline void square_each(const CornerLanes& p, SquaredShap
         const Vec n0 = product(bd, bc), n1 = product(v, w), n2 = product(w, u), n3 = product(u, v);
         const double six = scalar(u, n1), volume = six * six;
         const double uu = scalar(u, u), vv = scalar(v, v), ww = scalar(w, w);
-        const double shortest = lesser(lesser(lesser(uu, vv), lesser(ww, scalar(bc, bc))), lesser(scalar(bd, bd), scalar(cd, cd)));
+        const double bb = scalar(bc, bc), dd = scalar(bd, bd), cc = scalar(cd, cd);
+        const double shortest = lesser(lesser(lesser(uu, vv), lesser(ww, bb)), lesser(dd, cc));
         const Vec centre{uu * n1.x + vv * n2.x + ww * n3.x, uu * n1.y + vv * n2.y + ww * n3.y, uu * n1.z + vv * n2.z + ww * n3.z};
         const double radius = scalar(centre, centre);
         const double a0 = scalar(n0, n0), a1 = scalar(n1, n1), a2 = scalar(n2, n2), a3 = scalar(n3, n3);
@@ -60,6 +64,7 @@ WELLMESH_ALWAYS_INLINE inline void square_each(const CornerLanes& p, SquaredShap
         const double s12 = signed_square(scalar(n1, n2), q1, q2), s13 = signed_square(scalar(n1, n3), q1, q3), s23 = signed_square(scalar(n2, n3), q2, q3);
         six_volumes[i] = six;
         shortest_edge[i] = shortest;
+        longest_edge[i] = greater(greater(greater(uu, vv), greater(ww, bb)), greater(dd, cc));
         scaled_radius[i] = radius;
         radius_edge[i] = radius / (4 * volume * shortest);
         sigma[i] = volume / (36 * (shortest * shortest * shortest));
@@ -69,20 +74,30 @@ WELLMESH_ALWAYS_INLINE inline void square_each(const CornerLanes& p, SquaredShap
     }
 }
 
+void square_each_plainly(const CornerLanes& corners, SquaredShapes& shapes) noexcept { square_each(corners, shapes); }
 #ifdef WELLMESH_HAS_AVX_TARGETS
-[[gnu::target("avx2")]] void square_each_with_avx2(const CornerLanes& corners, SquaredShapes& shapes) { square_each(corners, shapes); }
-[[gnu::target("avx512f,avx512dq,prefer-vector-width=512")]] void square_each_with_avx512(const CornerLanes& corners, SquaredShapes& shapes) { square_each(corners, shapes); }
+[[gnu::target("avx2")]] void square_each_with_avx2(const CornerLanes& corners, SquaredShapes& shapes) noexcept { square_each(corners, shapes); }
+#endif
+#ifdef WELLMESH_HAS_AVX512_TARGET
+[[gnu::target("avx512f,avx512dq,prefer-vector-width=512")]] void square_each_with_avx512(const CornerLanes& corners, SquaredShapes& shapes) noexcept { square_each(corners, shapes); }
 #endif
 
 }  // namespace
 
-void square_shapes(const CornerLanes& corners, SquaredShapes& shapes) noexcept {
+std::vector<SquareShapes> ways_to_square_shapes() {
+    std::vector<SquareShapes> ways{square_each_plainly};
 #ifdef WELLMESH_HAS_AVX_TARGETS
-    static const bool has_avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0, has_avx2 = __builtin_cpu_supports("avx2") != 0;
-    if (has_avx512) return square_each_with_avx512(corners, shapes);
-    if (has_avx2) return square_each_with_avx2(corners, shapes);
+    if (__builtin_cpu_supports("avx2") != 0) ways.push_back(square_each_with_avx2);
 #endif
-    square_each(corners, shapes);
+#ifdef WELLMESH_HAS_AVX512_TARGET
+    if (__builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0) ways.push_back(square_each_with_avx512);
+#endif
+    return ways;
+}
+
+void square_shapes(const CornerLanes& corners, SquaredShapes& shapes) noexcept {
+    static const SquareShapes best = ways_to_square_shapes().back();
+    best(corners, shapes);
 }
 
 }  // namespace wellmesh

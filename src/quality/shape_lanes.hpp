@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "wellmesh/vec3.hpp"
 
@@ -22,17 +23,24 @@ struct CornerLanes {
 struct SquaredShapes {
     alignas(64) ShapeLane six_volumes;                  ///< signed; bit by bit those of six_volumes()
     alignas(64) ShapeLane shortest_edge, radius_edge, sigma;  ///< squares of TetShape's
+    alignas(64) ShapeLane longest_edge;                       ///< squared
     alignas(64) ShapeLane scaled_radius;                ///< square of circumradius times twelve volumes
     alignas(64) std::array<ShapeLane, 4> areas;         ///< squares of twice the faces' areas
     /// c |c| for the largest and the smallest cosine c of a dihedral angle: of the smallest and the largest angle.
     alignas(64) ShapeLane largest_cosine, smallest_cosine;
 };
 
+/// What is asked of lanes is asked so much more strictly that they can be believed: far more than the 1e-12 below, and what the shortest edge of a needle is off by.
+inline constexpr double kLaneSlack = 1e-9;
+
 /// Within 1e-12 of what shape_of() says, relative to it, or absolute for the cosines, of tetrahedra for which this holds: nothing over- or underflows.
 inline bool may_trust(const SquaredShapes& s, std::size_t lane) {
     return s.scaled_radius[lane] < 1e280 && s.shortest_edge[lane] > 1e-60 && s.six_volumes[lane] * s.six_volumes[lane] > 1e-200;
 }
 void square_shapes(const CornerLanes& corners, SquaredShapes& shapes) noexcept;
+/// All that this processor can do it with, the one that needs nothing first: bit by bit the same. For tests.
+using SquareShapes = void (*)(const CornerLanes&, SquaredShapes&) noexcept;
+[[nodiscard]] std::vector<SquareShapes> ways_to_square_shapes();
 
 /// Tetrahedra of a loop, which are measured as soon as there is one for each lane.
 template <class Tet>

@@ -88,18 +88,16 @@ Refiner::Fault Refiner::classify(TetId t, double& squared_badness) const {
     return sliver_fault(t, six_volume, squared_edge, squared_badness);
 }
 
-/// Does classify() surely find nothing, of one of several that were measured at once?
 bool Refiner::is_surely_faultless(TetId t, const SquaredShapes& s, std::size_t lane) const {
-    constexpr double kSlack = 1e-9;  // what the lanes say is off by 1e-12
     if (strict() || (sliver_rule_ && sliver_rule_->splits) || !may_trust(s, lane)) return false;
-    const double six = s.six_volumes[lane], volume = six * six, squared_radius = s.scaled_radius[lane] / (4 * volume);
-    if (!(six > 0 && s.radius_edge[lane] < std::min(max_radius_edge_ * max_radius_edge_, kFlatRadiusEdge * kFlatRadiusEdge) * (1 - kSlack))) return false;
-    // No edge is longer than the sphere is wide.
-    const double longest = 4 * squared_radius * (1 + kSlack);
-    if (!(six > rounding_ * longest && volume > kThinVolume * kThinVolume * longest * longest * longest)) return false;
+    // Of what is too flat all else is noise.
+    const double six = s.six_volumes[lane], volume = six * six, squared_longest = s.longest_edge[lane] * (1 + kLaneSlack);
+    if (!(six > rounding_ * squared_longest && volume > kThinVolume * kThinVolume * squared_longest * squared_longest * squared_longest)) return false;
+    const double squared_radius = s.scaled_radius[lane] / (4 * volume);
+    if (!(s.radius_edge[lane] < std::min(max_radius_edge_ * max_radius_edge_, kFlatRadiusEdge * kFlatRadiusEdge) * (1 - kLaneSlack))) return false;
     const TetStore::Corners& k = mesh_.tets().corners(t);
     const TetSize size = sizes_.of(mesh_.point(k[0]), mesh_.point(k[1]), mesh_.point(k[2]), mesh_.point(k[3]), mesh_.cell(t));
-    return squared_radius < squared_size_slack_ * size.max_squared_circumradius * (1 - kSlack) && six < 6 * size.max_volume * (1 - kSlack);
+    return squared_radius < squared_size_slack_ * size.max_squared_circumradius * (1 - kLaneSlack) && six < 6 * size.max_volume * (1 - kLaneSlack);
 }
 
 /// Flat, or a needle between a coarse and a fine part: that has little volume, too, but a sound circumsphere, which is computed exactly.
@@ -132,8 +130,7 @@ bool Refiner::is_forced(TetId t, Fault fault) const {
 std::optional<ForcedBy> Refiner::forced_by(TetId t) {
     if (!boundary_.acute().any()) return std::nullopt;
     if (const auto feature = exemptions_.feature_at(t)) return feature;
-    const auto& k = mesh_.tets().corners(t);
-    if (std::count_if(k.begin(), k.end(), [&](VertexId v) { return mesh_.info(v).carrier != CarrierKind::region; }) < 2) return std::nullopt;
+    if (!may_be_excused(mesh_, t)) return std::nullopt;
     const VertexId ball = refusing_ball(t);
     return ball.valid() ? exemptions_.feature_at(ball) : std::nullopt;
 }

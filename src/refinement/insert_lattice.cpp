@@ -280,7 +280,7 @@ void LatticeSeeder::find_clear_of(const Boundary& boundary, std::span<Seed> bloc
     };
     // A few of the block at once need look at a few of the candidates only.
     constexpr std::size_t kFew = 4;
-    std::vector<std::uint32_t> near_these;
+    std::vector<std::uint32_t> near_these(candidates.size());
     for (std::size_t first = 0; first < block.size(); first += kFew) {
         const std::size_t end = std::min(first + kFew, block.size());
         Box few;
@@ -292,15 +292,14 @@ void LatticeSeeder::find_clear_of(const Boundary& boundary, std::span<Seed> bloc
         }
         if (few.empty()) continue;
         few = few.grown(farthest * (1 + 1e-9));
-        near_these.resize(candidates.size());
         std::size_t count = 0;
         for (const std::uint32_t i : candidates) {
             near_these[count] = i;
             count += boundary.boxes[i].meets(few) ? 1U : 0U;
         }
-        near_these.resize(count);
+        const std::span<const std::uint32_t> these(near_these.data(), count);
         for (std::size_t k = first; k < end; ++k)
-            block[k].waits = block[k].waits && std::all_of(near_these.begin(), near_these.end(), [&](std::uint32_t i) { return is_clear(block[k].point, reach[k], i); });
+            block[k].waits = block[k].waits && std::all_of(these.begin(), these.end(), [&](std::uint32_t i) { return is_clear(block[k].point, reach[k], i); });
     }
 }
 

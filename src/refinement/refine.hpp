@@ -66,6 +66,8 @@ public:
 
     enum class Fault : std::uint8_t { none, size, radius_edge, flat, sliver };
     [[nodiscard]] Fault classify(TetId t, double& squared_badness) const;
+    /// Does classify() surely find nothing, of one of several that were measured at once?
+    [[nodiscard]] bool is_surely_faultless(TetId t, const SquaredShapes& shapes, std::size_t lane) const;
     /// The acute feature of the input that excuses a tetrahedron which misses a goal: one that it touches, or one whose ball holds the point
     /// that would split it. Empty if there is none.
     [[nodiscard]] std::optional<ForcedBy> forced_by(TetId t);
@@ -80,7 +82,7 @@ public:
     /// False: the input has neither acute angles nor gaps that are left, so nothing is excused.
     [[nodiscard]] bool may_excuse() const { return boundary_.acute().any() || gaps_.any(); }
     /// False: nothing can excuse this one. What forces a tetrahedron, or joins the sides of a gap, is an edge between vertices of the boundary.
-    [[nodiscard]] static bool may_excuse(const ConformingMesh& mesh, TetId t) {
+    [[nodiscard]] static bool may_be_excused(const ConformingMesh& mesh, TetId t) {
         const TetStore::Corners& c = mesh.tets().corners(t);
         return std::count_if(c.begin(), c.end(), [&](VertexId v) { return mesh.info(v).carrier != CarrierKind::region; }) >= 2;
     }
@@ -122,7 +124,6 @@ private:
     void clear_around(VertexId v);
     void insert_off_centre(TetId t, const Vec3& centre, InsertionReason reason);
     [[nodiscard]] Fault classify_strictly(TetId t, double& squared_badness) const;
-    [[nodiscard]] bool is_surely_faultless(TetId t, const SquaredShapes& shapes, std::size_t lane) const;
     [[nodiscard]] Fault classify_thin(TetId t, double squared_longest, double& squared_badness) const;
     [[nodiscard]] bool strict() const { return boundary_.rules.strict; }
     bool star_is_good(const Cavity& cavity, const Placement& where) const;

@@ -112,7 +112,7 @@ public:
         if (max_aspect_ == kNoAspect && has_even_edges(a, b, c, d, goal_)) return true;
         const std::array<Vec3, 4> n = inward_face_normals(a, b, c, d);
         const double det = dot(b - a, n[1]), fourth = (det * det) * (det * det);
-        if (!(det > 0 && fourth > kLeastCertain && goal_ > 0)) return false;
+        if (!(det > 0 && is_certain(fourth) && goal_ > 0)) return false;
         const std::array<double, 4> q{squared_norm(n[0]), squared_norm(n[1]), squared_norm(n[2]), squared_norm(n[3])};
         const double bound = goal_ * goal_ / kMargin;
         const auto above = [&](std::size_t i, std::size_t j) {
@@ -125,13 +125,12 @@ public:
     }
     /// The same of one of several that were measured at once, and where asked that it keeps the radius-edge ratio, too.
     [[nodiscard]] bool is_surely_good(const SquaredShapes& s, std::size_t lane, bool keeps_radius_edge) const {
-        constexpr double kSlack = 1e-9;  // what the lanes say is off by 1e-12
         const double six = s.six_volumes[lane], fourth = (six * six) * (six * six);
-        if (!(may_trust(s, lane) && six > 0 && goal_ > 0 && s.largest_cosine[lane] < goal_ * goal_ - kSlack)) return false;
-        if (keeps_radius_edge && !(s.radius_edge[lane] < squared_radius_edge_ * (1 - kSlack))) return false;
+        if (!(may_trust(s, lane) && six > 0 && goal_ > 0 && s.largest_cosine[lane] < goal_ * goal_ - kLaneSlack)) return false;
+        if (keeps_radius_edge && !(s.radius_edge[lane] < squared_radius_edge_ * (1 - kLaneSlack))) return false;
         // As in aspect_badness().
         return max_aspect_ == kNoAspect ||
-               (1 + kSlack) * s.scaled_radius[lane] * (s.areas[0][lane] + s.areas[1][lane] + s.areas[2][lane] + s.areas[3][lane]) <= fourth * (max_aspect_ * max_aspect_);
+               (is_certain(fourth) && (1 + kLaneSlack) * s.scaled_radius[lane] * (s.areas[0][lane] + s.areas[1][lane] + s.areas[2][lane] + s.areas[3][lane]) <= fourth * (max_aspect_ * max_aspect_));
     }
     /// Cosine of the smallest dihedral angle, nothing else.
     [[nodiscard]] double cosine(TetId t) const {
@@ -145,6 +144,7 @@ public:
 private:
     /// Far beyond rounding; and where products, of two squared areas or so, leave the range of doubles nothing is certain.
     static constexpr double kMargin = 1 + 1e-12, kLeastCertain = 1e-280;
+    static bool is_certain(double product) { return product > kLeastCertain && product < 1 / kLeastCertain; }
 
     /// An aspect ratio half above its bound counts as three degrees below an angle of 30: angles come first.
     static constexpr double kAspectWeight = 0.05;

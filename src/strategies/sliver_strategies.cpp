@@ -18,7 +18,7 @@ namespace {
 /// `best`: refinement looks for points without slivers up to this angle, among so many: more cost more than the moves that they save. For
 /// larger angles most stars would have to be moved anyway, and picks only add vertices (docs/decisions/0010).
 constexpr double kPickingAngleDeg = 20;
-constexpr unsigned kPickingCandidates = 20;
+constexpr unsigned kPickingCandidates = 12;
 /// Tries of a picking region after the fact, where a failure may start a chain of slivers; they end with the first that is good.
 constexpr unsigned kTries = 100;
 

@@ -71,11 +71,11 @@ private:
 
     template <class AtSegments>
     void segment_to_segments(std::uint32_t s, double& limit, AtSegments&& at_segments) const {
-        const auto [a, b] = segments_[s];
-        const std::array<Vec3, 2> here{complex_.point(a), complex_.point(b)};
+        const std::array<VertexId, 2>& ends = segments_[s];
+        const std::array<Vec3, 2> here{complex_.point(ends[0]), complex_.point(ends[1])};
         segment_tree_->query([&](const Box& box) { return box.meets(segment_boxes_[s].grown(limit)); }, [&](std::uint32_t t) {
             const auto [c, d] = segments_[t];
-            if (t <= s || a == c || a == d || b == c || b == d) return;
+            if (t <= s || ends[0] == c || ends[0] == d || ends[1] == c || ends[1] == d) return;
             const ClosestPair closest = closest_between(here, {complex_.point(c), complex_.point(d)});
             const double gap = distance(closest.on_first, closest.on_second);
             if (gap < limit) at_segments(s, t, Gap{gap, closest.on_first, closest.on_second});

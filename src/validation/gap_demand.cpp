@@ -46,10 +46,10 @@ bool has_gap_within(double limit, const ValidPlc& plc, const LocalFeatureSize& s
     const BoxTree tree(boxes, workers);
     workers.for_ranges(boxes.size(), kSegmentsAPiece, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t s = begin; s < end && !found.load(std::memory_order_relaxed); ++s) {
-            const auto& [a, b] = plc.segments[s].ends;
+            const std::array<VertexId, 2>& ends = plc.segments[s].ends;
             tree.query([&, reach = boxes[s].grown(limit)](const Box& box) { return box.meets(reach); }, [&](std::uint32_t t) {
                 const auto& [c, d] = plc.segments[t].ends;
-                if (t <= s || a == c || a == d || b == c || b == d) return;
+                if (t <= s || ends[0] == c || ends[0] == d || ends[1] == c || ends[1] == d) return;
                 const ClosestPair closest = closest_between({end_of(s, 0), end_of(s, 1)}, {end_of(t, 0), end_of(t, 1)});
                 if (!(distance(closest.on_first, closest.on_second) >= limit)) found = true;
             });

@@ -2,10 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
+#include "core/rng.hpp"
 #include "pipeline/extract_mesh.hpp"
+#include "quality/shape_lanes.hpp"
+#include "support/acute_plcs.hpp"
 #include "support/staged_mesh.hpp"
 #include "support/synthetic_plcs.hpp"
 
@@ -100,6 +105,86 @@ TEST(Refine, NothingIsLeftToDo) {
     staged.for_domain([&](TetId t) { EXPECT_EQ(refiner.classify(t, badness), Refiner::Fault::none); });
     EXPECT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
     EXPECT_EQ(staged.mesh.vertex_count(), vertices);
+}
+
+/// Of coarse meshes with flat tetrahedra, and of refined ones, where it is to be said of nearly all.
+TEST(Refine, WhatIsSurelyFaultlessHasNoFault) {
+    for (const NamedPlc& named : all_synthetic_plcs())
+        for (const std::uint64_t rotation : {0U, 3U}) {
+            MeshOptions options;
+            options.size.edge_length = 0.2;
+            options.size.max_volume = 5e-4;
+            options.quality.max_radius_edge_ratio = 1.6;
+            StagedMesh staged(transformed(named.plc, rotation, 0, 1), options);
+            staged.conform();
+            Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+            std::size_t sure = 0, all = 0;
+            const auto look_at_all = [&] {
+                sure = all = 0;
+                ShapeBatch<TetId> batch;
+                const auto look = [&](TetId t, const SquaredShapes& shapes, std::size_t lane) {
+                    double badness = 0;
+                    ++all;
+                    if (!refiner.is_surely_faultless(t, shapes, lane)) return;
+                    ++sure;
+                    ASSERT_EQ(refiner.classify(t, badness), Refiner::Fault::none) << named.name;
+                };
+                staged.for_domain([&](TetId t) {
+                    const auto& c = staged.mesh.tets().corners(t);
+                    batch.add(t, staged.mesh.point(c[0]), staged.mesh.point(c[1]), staged.mesh.point(c[2]), staged.mesh.point(c[3]), look);
+                });
+                batch.finish(look);
+            };
+            look_at_all();
+            ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
+            look_at_all();
+            EXPECT_GT(static_cast<double>(sure), 0.9 * static_cast<double>(all)) << named.name;
+        }
+}
+
+/// Points of one oblique line, but for rounding: the circumradius is noise, and comes out as nothing.
+TEST(Refine, NothingIsSureOfAFlatTetrahedron) {
+    MeshOptions options;
+    options.size.edge_length = 0.3;
+    StagedMesh staged(cube(), options);
+    staged.conform();
+    Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+    TetId any{};
+    staged.for_domain([&](TetId t) { any = t; });
+    std::size_t positive = 0;
+    const auto look = [&](TetId t, const SquaredShapes& shapes, std::size_t lane) {
+        positive += shapes.six_volumes[lane] > 0;
+        EXPECT_FALSE(refiner.is_surely_faultless(t, shapes, lane));
+    };
+    ShapeBatch<TetId> batch;
+    for (std::uint64_t k = 0; k < 200'000; ++k) {
+        const auto draw = [&](std::uint64_t i) { return unit_double(mix64(k, i)); };
+        const Vec3 from{0.1 + 0.5 * draw(0), 0.1 + 0.5 * draw(1), 0.1 + 0.5 * draw(2)}, along = 0.05 * Vec3{draw(3), draw(4), draw(5)};
+        std::array<Vec3, 4> p;
+        for (std::size_t i = 0; i < 4; ++i) p[i] = from + (0.25 * std::floor(4 * draw(6 + i)) + static_cast<double>(i)) * along;
+        batch.add(any, p[0], p[1], p[2], p[3], look);
+    }
+    batch.finish(look);
+    EXPECT_GT(positive, 1000U);
+}
+
+/// Of all tetrahedra beside an acute angle.
+TEST(Refine, NothingExcusesWhatMayNotBeExcused) {
+    MeshOptions options;
+    options.size.edge_length = 0.15;
+    StagedMesh staged(transformed(wedge(15), 2, 0, 1), options);
+    staged.conform();
+    Refiner refiner(staged.mesh, staged.boundary, staged.guard, options);
+    ASSERT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
+    std::size_t excused = 0, inside = 0;
+    staged.for_domain([&](TetId t) {
+        const bool is_excused = refiner.excuses(t), may_be = Refiner::may_be_excused(staged.mesh, t);
+        EXPECT_TRUE(may_be || !is_excused);
+        excused += is_excused;
+        inside += !may_be;
+    });
+    EXPECT_GT(excused, 0U);
+    EXPECT_GT(inside, 0U);
 }
 
 TEST(Refine, SplitRemovesItsTetrahedronAndRestoresTheGoals) {

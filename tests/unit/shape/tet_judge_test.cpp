@@ -71,13 +71,14 @@ TEST(TetJudge, WhatIsSurelyGoodIsGood) {
     for (const double aspect : {TetJudge::kNoAspect, 8.0, 3.5})
         for (const double angle : {10.0, 30.0, 50.0}) {
             judge.set_goal(std::cos(angle * std::numbers::pi / 180), aspect);
-            std::size_t sure = 0, good = 0, sure_in_lanes = 0;
+            std::size_t sure = 0, good = 0, sure_in_lanes = 0, beyond_ratio = 0;
             ShapeBatch<TetId> batch;
             const auto look = [&](TetId t, const SquaredShapes& shapes, std::size_t lane) {
                 const bool is_sure = judge.is_surely_good(shapes, lane, false), with_ratio = judge.is_surely_good(shapes, lane, true);
                 EXPECT_TRUE(!is_sure || judge.shape_badness(t) <= judge.goal()) << angle;
                 EXPECT_EQ(with_ratio, is_sure && judge.keeps_radius_edge(t)) << angle;
                 sure_in_lanes += is_sure;
+                beyond_ratio += is_sure && !with_ratio;
             };
             staged.for_domain([&](TetId t) {
                 const bool is_sure = judge.is_surely_good(t);
@@ -90,6 +91,7 @@ TEST(TetJudge, WhatIsSurelyGoodIsGood) {
             batch.finish(look);
             EXPECT_LE(sure, good);
             EXPECT_LE(sure_in_lanes, good);
+            if (aspect == TetJudge::kNoAspect && angle < 50) { EXPECT_GT(beyond_ratio, 0U) << angle; }
             if (aspect != 3.5) {
                 EXPECT_GE(static_cast<double>(sure), 0.7 * static_cast<double>(good)) << angle;
                 EXPECT_GE(static_cast<double>(sure_in_lanes), 0.7 * static_cast<double>(good)) << angle;

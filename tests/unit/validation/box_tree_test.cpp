@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/rng.hpp"
@@ -23,6 +24,24 @@ std::vector<Box> random_boxes(std::size_t n, std::uint64_t seed, bool in_one_pla
         boxes[i] = Box{centre, centre}.grown(half);
     }
     return boxes;
+}
+
+TEST(Box, MeetsWhatItTouchesAndNothingApart) {
+    const Box box{{0, 0, 0}, {1, 2, 3}};
+    for (const auto& [low, high] : {std::array{Vec3{1, 2, 3}, Vec3{2, 3, 4}}, {Vec3{-1, -1, -1}, Vec3{0, 0, 0}}, {Vec3{0.2, 0.3, 0.4}, Vec3{0.3, 0.4, 0.5}}, {Vec3{-9, 1, 1}, Vec3{9, 1, 1}}}) {
+        EXPECT_TRUE(box.meets({low, high}));
+        EXPECT_TRUE((Box{low, high}.meets(box)));
+    }
+    for (const Vec3& away : {Vec3{1.01, 0, 0}, Vec3{-1.01, 0, 0}, Vec3{0, 2.01, 0}, Vec3{0, -2.01, 0}, Vec3{0, 0, 3.01}, Vec3{0, 0, -3.01}}) {
+        const Box moved{box.low + away, box.high + away};
+        EXPECT_FALSE(box.meets(moved));
+        EXPECT_FALSE(moved.meets(box));
+    }
+    EXPECT_EQ(box.squared_distance_to({0.5, 2, 1}), 0);
+    EXPECT_EQ(box.squared_distance_to({-2, 1, 1}), 4);
+    EXPECT_EQ(box.squared_distance_to({3, 1, 1}), 4);
+    EXPECT_EQ(box.squared_distance_to({2, 4, 5}), 1 + 4 + 4);
+    EXPECT_EQ(box.squared_distance_to({-1, -1, -1}), 3);
 }
 
 TEST(BoxTree, FindsWhatMeetsABoxWhoeverMadeIt) {
