@@ -91,8 +91,9 @@ public:
         const double cosine = max_cos_dihedral(a, b, c, d);
         if (cosine > goal_ || max_aspect_ == kNoAspect) return cosine;
         const Vec3 u = b - a, v = c - a, w = d - a;
-        const double det = determinant(u, v, w);
-        return std::max(cosine, aspect_badness(squared_norm(scaled_circumcentre(u, v, w)) / (4 * det * det * det * det), inward_face_normals(a, b, c, d)));
+        const double det = determinant(u, v, w), scaled = squared_norm(scaled_circumcentre(u, v, w)), fourth = 4 * det * det * det * det;
+        // In domains of 1e-24 and less that power is none.
+        return std::max(cosine, aspect_badness(is_certain(fourth) ? scaled / fourth : scaled / (4 * det * det) / (det * det), inward_face_normals(a, b, c, d)));
     }
     /// Do edges and volume alone show that no dihedral angle has a larger cosine than this, which is positive? The sine at an edge is 6 V times its length over
     /// four times the product of the areas beside it, neither of them larger than an equilateral triangle of the longest edge. They do up to 35 degrees for

@@ -99,6 +99,26 @@ TEST(TetJudge, WhatIsSurelyGoodIsGood) {
         }
 }
 
+/// Powers of two change nothing, however small: fourth powers of volumes would be zero there.
+TEST(TetJudge, ShapesAreAsBadAtAnyScale) {
+    const auto count_good = [](double scale) {
+        MeshOptions options;
+        options.size.edge_length = 0.15 * scale;
+        StagedMesh staged(transformed(cube(), 3, 0, scale), options);
+        Refiner refiner(staged.mesh, staged.boundary, staged.guard, staged.options);
+        staged.conform();
+        EXPECT_EQ(refiner.refine(), RunGuard::Verdict::go_on);
+        TetJudge judge(staged.mesh, refiner.sizes(), 2);
+        judge.set_goal(std::cos(20 * std::numbers::pi / 180), 8);
+        std::size_t good = 0;
+        staged.for_domain([&](TetId t) { good += judge.shape_badness(t) <= judge.goal(); });
+        return good;
+    };
+    const std::size_t good = count_good(1);
+    EXPECT_GT(good, 100U);
+    for (const double scale : {0x1p-85, 0x1p-100, 0x1p+80}) EXPECT_EQ(count_good(scale), good) << scale;
+}
+
 TEST(Blocks, NeighboursShareOneAndThereAreEnough) {
     EXPECT_EQ(Blocks().of({5, 6, 7}), 0U);
     EXPECT_EQ(Blocks({0, 0, 0}, {1, 1, 1}, 1000).of({1, 1, 1}), 0U) << "a small mesh is one block";
