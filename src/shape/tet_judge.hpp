@@ -92,7 +92,7 @@ public:
         if (cosine > goal_ || max_aspect_ == kNoAspect) return cosine;
         const Vec3 u = b - a, v = c - a, w = d - a;
         const double det = determinant(u, v, w), scaled = squared_norm(scaled_circumcentre(u, v, w)), fourth = 4 * det * det * det * det;
-        // In domains of 1e-24 and less that power is none.
+        // In tiny domains that power is zero, or too coarse.
         return std::max(cosine, aspect_badness(is_certain(fourth) ? scaled / fourth : scaled / (4 * det * det) / (det * det), inward_face_normals(a, b, c, d)));
     }
     /// Do edges and volume alone show that no dihedral angle has a larger cosine than this, which is positive? The sine at an edge is 6 V times its length over
